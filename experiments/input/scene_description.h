@@ -1,0 +1,60 @@
+// A scene as the user describes it, from a JSON file or from command-line options:
+// plain data, with the defaults of the command-line contract, before anything is built.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "solvers/scene/spring_cloth.h"
+
+namespace springstab {
+
+/// Which particles are held fast.
+struct Pins {
+  enum class Kind { none, first_row, corners, indices };
+  Kind kind = Kind::none;
+  std::vector<int> indices;  // for Kind::indices, from 0, sorted, without repeats
+  std::string source;        // where it was written, for messages ("--pin" or the scene file)
+  long line = 0;
+};
+
+/// Rayleigh damping D = d0 M + alpha K; no value means that alpha is to be designed with the step.
+struct RayleighDescription {
+  double d0 = 0;                    // [1/s]
+  std::optional<double> alpha = 0;  // [s]
+};
+
+/// How the scene starts: rest positions times `stretch` (per axis, about the origin), one velocity for all free
+/// particles.
+struct InitialDescription {
+  Eigen::Vector3d stretch{1, 1, 1};
+  Eigen::Vector3d velocity{0, 0, 0};  // [m/s]
+};
+
+/// A grid, or the path of an OBJ file.
+using Geometry = std::variant<Grid, std::string>;
+
+struct SceneDescription {
+  Geometry geometry;
+  SpringMaterial material;
+  Pins pins;
+  Eigen::Vector3d gravity{0, -9.81, 0};  // [m/s²]
+  RayleighDescription damping;
+  InitialDescription initial;
+};
+
+/// "none", "first-row", "corners" or "0,5-9". Throws InputError(source, line, ...) for anything else.
+Pins parse_pins(const std::string& text, const std::string& source, long line);
+
+/// The materials known by name. Throws InputError(source, line, ...) naming the nearest known one.
+SpringMaterial named_material(const std::string& name, const std::string& source, long line);
+
+/// Reads a scene file (JSON; the schema stands in the README). Paths in it are relative to the file.
+/// Throws InputError with the line for syntax errors, unknown, duplicate or missing keys, wrong types,
+/// values out of range.
+SceneDescription read_scene_file(const std::string& path);
+
+}  // namespace springstab

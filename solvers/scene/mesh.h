@@ -1,0 +1,27 @@
+// A polygon mesh as its file gave it: the geometry of a cloth at rest, before any physics.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace springstab {
+
+/// Polygons over vertices. Face f has the vertices `face(f)`, in order around it, indices from 0.
+/// The source lines let an error that is found later (a zero-length edge, say) still name its line.
+struct Mesh {
+  std::vector<Eigen::Vector3d> vertices;  // [m]
+  std::vector<int> face_offsets{0};       // size faces() + 1, into face_vertices
+  std::vector<int> face_vertices;
+  std::string source;             // the file's name, for messages
+  std::vector<long> vertex_line;  // one per vertex
+  std::vector<long> face_line;    // one per face
+
+  int faces() const { return static_cast<int>(face_offsets.size()) - 1; }
+  std::span<const int> face(int f) const {
+    return {face_vertices.data() + face_offsets[f], face_vertices.data() + face_offsets[f + 1]};
+  }
+};
+
+}  // namespace springstab

@@ -1,0 +1,67 @@
+// What a method may ask of the thing it moves: a handful of verbs, as concepts for any vector type,
+// and as abstract classes for the systems that are chosen at run time (scenes, matrices from a file).
+// All verbs are mass-scaled: K' = M⁻¹K [1/s²], D' = M⁻¹D [1/s], accelerations [m/s²].
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+
+#include "solvers/state.h"
+
+namespace springstab {
+
+/// How a solve with 1 + hD' + h²K' went.
+struct SolveReport {
+  StepStatus status = StepStatus::done;
+  long iterations = 0;  // 0 for a direct solve
+  long products = 0;    // products with K and D it took
+};
+
+/// All that an explicit method uses: a = acceleration(x, v).
+template <class S, class V>
+concept Accelerating = requires(S& system, const V& x, const V& v, V& a) { system.acceleration(x, v, a); };
+
+/// A linear system x'' = -K'x - D'v (+ constant): its products, and the solve that implicit methods need,
+/// (1 + hD' + h²K') out = rhs.
+template <class S, class V>
+concept Linear = Accelerating<S, V> && requires(S& system, double h, const V& u, V& out) {
+  system.stiffness_times(u, out);
+  system.damping_times(u, out);
+  { system.solve_shifted(h, u, out) } -> std::same_as<SolveReport>;
+};
+
+/// A system that can be linearized at (x, v); a linear one returns itself.
+template <class S, class V>
+concept Linearizable = Accelerating<S, V> && requires(S& system, const V& x, const V& v) {
+  { system.linearized(x, v) } -> Linear<V>;
+};
+
+using Vector = Eigen::VectorXd;
+class LinearSystem;
+
+/// A mechanical system with `size()` unknowns, chosen at run time. Not const: systems own workspace.
+class System {
+ public:
+  virtual ~System() = default;
+  virtual Eigen::Index size() const = 0;
+  /// out = M⁻¹ f(x, v); resizes `out`. Overflow shows as non-finite entries, it is not an error.
+  virtual void acceleration(const Vector& x, const Vector& v, Vector& out) = 0;
+  /// The linear system with K and D of the state (x, v). Valid until the next call.
+  virtual LinearSystem& linearized(const Vector& x, const Vector& v) = 0;
+  /// ½ vᵀMv [J].
+  virtual double kinetic_energy(const Vector& v) = 0;
+  /// Elastic energy plus the potential of the constant forces [J].
+  virtual double potential_energy(const Vector& x) = 0;
+};
+
+/// x'' = -K'x - D'v, without a constant force: the system whose step is the state transition matrix.
+class LinearSystem : public System {
+ public:
+  virtual void stiffness_times(const Vector& u, Vector& out) = 0;  // out = K'u
+  virtual void damping_times(const Vector& u, Vector& out) = 0;    // out = D'u
+  /// Solves (1 + hD' + h²K') out = rhs, starting from zero where it iterates.
+  virtual SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) = 0;
+  LinearSystem& linearized(const Vector&, const Vector&) override { return *this; }
+};
+
+}  // namespace springstab

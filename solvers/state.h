@@ -4,6 +4,7 @@
 // a rational function when the analysis asks a method for its formula.
 #pragma once
 
+#include <cmath>
 #include <utility>
 
 namespace springstab {
@@ -28,6 +29,8 @@ template <class V>
 bool all_finite(const V& u) {
   return u.allFinite();
 }
+
+inline bool all_finite(double u) { return std::isfinite(u); }
 
 /// Ends a step: takes over the new state from the method's workspace if it is finite.
 template <class V>

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct RayleighDescription {
   std::optional<double> alpha = 0;  // [s]
 };
 
-/// How the scene starts: rest positions times `stretch` (per axis, about the origin), one velocity for all free
-/// particles.
+/// How the scene starts: rest positions times `stretch` (per axis, about the origin), one velocity for all
+/// free particles.
 struct InitialDescription {
   Eigen::Vector3d stretch{1, 1, 1};
   Eigen::Vector3d velocity{0, 0, 0};  // [m/s]
@@ -51,6 +52,10 @@ Pins parse_pins(const std::string& text, const std::string& source, long line);
 
 /// The materials known by name. Throws InputError(source, line, ...) naming the nearest known one.
 SpringMaterial named_material(const std::string& name, const std::string& source, long line);
+
+/// The half of a message about an unknown word that says what was expected:
+/// "expected 'soft' or 'stiff' (did you mean 'soft'?)", the nearest word only if it is near.
+std::string expected_one_of(const std::string& word, const std::vector<std::string_view>& known);
 
 /// Reads a scene file (JSON; the schema stands in the README). Paths in it are relative to the file.
 /// Throws InputError with the line for syntax errors, unknown, duplicate or missing keys, wrong types,

@@ -1,0 +1,53 @@
+// ARPACK behind one door: the largest eigenvalues of a symmetric operator, and the eigenvalues of largest
+// modulus of a general one. An operator is a size and a product; no matrix is needed.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace springstab {
+
+/// out = A in, both of length `size`. The product must not start another eigenvalue solve.
+struct LinearOperator {
+  Eigen::Index size = 0;
+  std::function<void(const Eigen::VectorXd& in, Eigen::VectorXd& out)> apply;
+};
+
+struct ArpackOptions {
+  double tolerance = 1e-10;      // on ‖Av - θv‖, relative to |θ|
+  Eigen::Index basis_size = 64;  // Lanczos/Arnoldi vectors kept (ncv)
+  int max_restarts = 2000;
+  std::uint64_t seed = 1;  // of the start vector
+};
+
+/// What a symmetric solve found. `values` holds the converged eigenvalues only, largest first; it is empty,
+/// never garbage, when nothing converged.
+struct SymmetricEigenpairs {
+  bool converged = false;  // all that were wanted
+  std::vector<double> values;
+  Eigen::MatrixXd vectors;        // one column per value, of unit norm
+  std::vector<double> residuals;  // ‖Av - θv‖, computed after the fact
+  long products = 0;
+};
+
+struct Eigenvalues {
+  bool converged = false;
+  std::vector<std::complex<double>> values;  // largest modulus first
+  long products = 0;
+};
+
+/// The `count` algebraically largest eigenvalues. Needs count < size; solve smaller problems densely.
+/// Throws std::invalid_argument for impossible sizes or a non-finite product, std::logic_error when called
+/// from within a product, std::runtime_error for any other failure that ARPACK reports.
+/// One solve runs at a time: ARPACK keeps its state in static variables.
+SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index count,
+                                       const ArpackOptions& options = {});
+
+/// The `count` eigenvalues of largest modulus of a general operator. Needs count < size - 1. Throws likewise.
+/// Do not expect convergence for a stable transition matrix: its largest eigenvalues cluster near 1.
+Eigenvalues dominant_eigenvalues(const LinearOperator& a, Eigen::Index count, const ArpackOptions& options = {});
+
+}  // namespace springstab

@@ -1,0 +1,90 @@
+#include "analysis/method_limits.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace springstab {
+namespace {
+
+double frobenius_product(const SparseMatrix& a, const SparseMatrix& b) { return a.cwiseProduct(b).sum(); }
+
+bool is_semidefinite(const SparseMatrix& a) {
+  const double size = Eigen::VectorXd(a.diagonal()).cwiseAbs().maxCoeff();
+  SparseMatrix shift(a.rows(), a.cols());
+  shift.setIdentity();
+  return size > 0 &&
+         Eigen::SimplicialLLT<SparseMatrix>(a + 1e-12 * size * shift).info() == Eigen::Success;
+}
+
+// The least-squares fit of D by d0 M + alpha K, scaled so that M and K have unit size.
+DampingModel rayleigh_fit(const StructuralMatrices& s) {
+  const double m = s.mass.norm(), k = s.stiffness.norm();
+  const double mk = k > 0 ? frobenius_product(s.mass, s.stiffness) / (m * k) : 0;
+  const Eigen::Matrix2d normal{{1, mk}, {mk, k > 0 ? 1.0 : 0.0}};
+  const Eigen::Vector2d right{frobenius_product(s.damping, s.mass) / m,
+                              k > 0 ? frobenius_product(s.damping, s.stiffness) / k : 0};
+  const Eigen::Vector2d c = normal.fullPivLu().solve(right);
+  return {DampingModel::Kind::rayleigh, c[0] / m, k > 0 ? c[1] / k : 0};
+}
+
+std::optional<double> positive(double h) { return h > 0 ? std::optional(h) : std::nullopt; }
+
+LimitStatus status_of(double h) {
+  return h == 0 ? LimitStatus::none : std::isinf(h) ? LimitStatus::unlimited : LimitStatus::limited;
+}
+
+}  // namespace
+
+DampingModel classify_damping(const StructuralMatrices& s) {
+  if (!s.has_damping()) return {};
+  constexpr double tolerance = 1e-12;
+  DampingModel fit = rayleigh_fit(s);
+  const double size = s.damping.norm();
+  if (fit.d0 < 0 && -fit.d0 * s.mass.norm() <= tolerance * size) fit.d0 = 0;
+  if (fit.alpha < 0 && -fit.alpha * s.stiffness.norm() <= tolerance * size) fit.alpha = 0;
+  const SparseMatrix rest = s.damping - fit.d0 * s.mass - fit.alpha * s.stiffness;
+  if (fit.d0 >= 0 && fit.alpha >= 0 && rest.norm() <= tolerance * size) return fit;
+  return {DampingModel::Kind::general, 0, 0, is_semidefinite(s.damping)};
+}
+
+MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
+                           double safety) {
+  const StabilityRegion& region = stability_region(method);
+  MethodLimits limits;
+  if (damping.kind == DampingModel::Kind::general) {
+    if (!region.constants().covers_quadrant || !damping.semidefinite || k0.indefinite) return limits;
+    limits.status = LimitStatus::unlimited;
+    limits.h_max = limits.h_certified = std::numeric_limits<double>::infinity();
+    return limits;
+  }
+
+  const double k_max = std::max(k0.value, 0.0);
+  const double k_bound = k0.indefinite ? std::numeric_limits<double>::infinity() : k0.upper_bound;
+  const double proof_margin = 1 - 1e-12;  // for the rounding of the limit itself
+  limits.designed = design_damping(region, k_max, damping.d0);
+  if (damping.kind == DampingModel::Kind::designed) {
+    limits.status = status_of(limits.designed->h_max);
+    limits.h_max = positive(limits.designed->h_max);
+    if (std::isfinite(k_bound))
+      limits.h_certified = positive(proof_margin * design_damping(region, k_bound, damping.d0).h_max);
+    if (limits.status == LimitStatus::limited)
+      limits.recommended = positive(design_damping(region, safety * k_max, damping.d0).h_max);
+    return limits;
+  }
+
+  RayleighModes modes{std::clamp(k0.smallest.value_or(0), 0.0, k_max), k_max, damping.d0, damping.alpha};
+  const double h_max = critical_step(region, modes);
+  limits.status = status_of(h_max);
+  limits.h_max = positive(h_max);
+  if (limits.status == LimitStatus::limited) limits.recommended = positive(recommended_step(region, modes, safety));
+  if (std::isfinite(k_bound)) {
+    modes.k_min = 0;
+    modes.k_max = k_bound;
+    limits.h_certified = positive(proof_margin * critical_step(region, modes));
+  }
+  return limits;
+}
+
+}  // namespace springstab

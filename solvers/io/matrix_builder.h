@@ -1,0 +1,41 @@
+// From the entries that a matrix file lists to a sparse matrix: the rules that all matrix formats share.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <string>
+#include <vector>
+
+#include "solvers/io/text_file.h"
+
+namespace springstab {
+
+/// What a file leaves out. Symmetric: entries above the diagonal; skew-symmetric: the diagonal as well.
+enum class Symmetry { general, symmetric, skew_symmetric };
+
+/// Collects entries in any order. A symmetric or skew-symmetric matrix must be square.
+class MatrixBuilder {
+ public:
+  MatrixBuilder(std::string source, int rows, int columns, Symmetry symmetry);
+
+  void reserve(std::size_t entries) { entries_.reserve(entries); }
+
+  /// Adds the entry of a 1-based position. Throws InputError at `line` for a position outside the matrix or
+  /// in the part that its symmetry leaves out.
+  void add(long line, long long row, long long column, double value);
+
+  /// The matrix with both triangles. Throws InputError for two entries at one position, naming both lines.
+  Eigen::SparseMatrix<double> build() &&;
+
+ private:
+  struct Entry : Eigen::Triplet<double> {
+    Entry(int row, int column, double value, long at) : Triplet(row, column, value), line(at) {}
+    long line;
+  };
+
+  std::string source_;
+  int rows_, columns_;
+  Symmetry symmetry_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace springstab

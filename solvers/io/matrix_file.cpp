@@ -1,0 +1,45 @@
+#include "solvers/io/matrix_file.h"
+
+#include <filesystem>
+#include <string_view>
+
+#include "solvers/io/harwell_boeing.h"
+#include "solvers/io/input_error.h"
+#include "solvers/io/matrix_market.h"
+#include "solvers/io/text_file.h"
+
+namespace springstab {
+namespace {
+
+std::string lowercase_suffix(const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return suffix;
+}
+
+/// .hb, .rb, or a matrix type: real, complex, pattern or integer; its symmetry; assembled or elemental.
+bool is_harwell_boeing_suffix(std::string_view suffix) {
+  const auto has = [suffix](std::size_t i, std::string_view letters) {
+    return letters.find(suffix[i]) != letters.npos;
+  };
+  return suffix == ".hb" || suffix == ".rb" ||
+         (suffix.size() == 4 && has(1, "rcpi") && has(2, "suhzr") && has(3, "ae"));
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> read_matrix(const std::string& path) {
+  const std::string text = read_text_file(path);
+  if (has_matrix_market_banner(text)) return parse_matrix_market(path, text);
+  if (looks_like_harwell_boeing(text)) return parse_harwell_boeing(path, text);
+  const std::string suffix = lowercase_suffix(path);
+  if (suffix == ".mtx" || suffix == ".mm") return parse_matrix_market(path, text);
+  if (is_harwell_boeing_suffix(suffix)) return parse_harwell_boeing(path, text);
+  throw InputError(
+      path, 1,
+      "neither a Matrix Market banner nor a Harwell-Boeing header, expected a file that begins with "
+      "'%%MatrixMarket' or one of Harwell-Boeing's");
+}
+
+}  // namespace springstab

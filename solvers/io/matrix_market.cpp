@@ -1,0 +1,170 @@
+#include "solvers/io/matrix_market.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solvers/io/matrix_builder.h"
+#include "solvers/io/text_file.h"
+
+namespace springstab {
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+constexpr std::string_view banner = "%%matrixmarket";
+
+std::string lowercase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+/// What the banner line says: "%%MatrixMarket matrix FORMAT FIELD SYMMETRY".
+struct Kind {
+  bool coordinate = true, integer = false;
+  Symmetry symmetry = Symmetry::general;
+};
+
+Kind parse_banner(std::string_view line, const Location& at) {
+  const std::string lower = lowercase(line);
+  Words words;
+  append_words(lower, words);
+  if (words.empty() || words[0] != banner)
+    at.fail("no Matrix Market banner, expected '%%MatrixMarket matrix coordinate real general' or the like");
+  if (words.size() != 5 || words[1] != "matrix")
+    at.fail("the banner is malformed, expected '%%MatrixMarket matrix FORMAT FIELD SYMMETRY'");
+  Kind kind;
+  if (words[2] == "array")
+    kind.coordinate = false;
+  else if (words[2] != "coordinate")
+    at.fail("unknown format " + quoted(words[2]) + ", expected coordinate or array");
+  if (words[3] == "complex") at.fail("a complex matrix, expected a real or integer one");
+  if (words[3] == "pattern") at.fail("a pattern without values, expected a real or integer matrix");
+  if (words[3] == "integer")
+    kind.integer = true;
+  else if (words[3] != "real" && words[3] != "double")
+    at.fail("unknown field " + quoted(words[3]) + ", expected real or integer");
+  if (words[4] == "hermitian")
+    at.fail("a hermitian, hence complex matrix, expected general, symmetric or skew-symmetric");
+  if (words[4] == "symmetric")
+    kind.symmetry = Symmetry::symmetric;
+  else if (words[4] == "skew-symmetric")
+    kind.symmetry = Symmetry::skew_symmetric;
+  else if (words[4] != "general")
+    at.fail("unknown symmetry " + quoted(words[4]) + ", expected general, symmetric or skew-symmetric");
+  return kind;
+}
+
+/// Steps to the next line with data and splits it; false at the end of the text.
+bool next_data(LineReader& lines, Words& words) {
+  do {
+    if (!lines.next()) return false;
+    words.clear();
+    append_words(lines.line(), words);
+  } while (words.empty() || words[0].starts_with('%'));
+  return true;
+}
+
+struct Size {
+  int rows = 0, columns = 0;
+  long long entries = 0;  // lines that follow
+  long line = 0;
+};
+
+Size parse_size(const Kind& kind, const Words& words, const Location& at) {
+  const std::size_t count = kind.coordinate ? 3 : 2;
+  if (words.size() != count)
+    at.fail("a size line of " + std::to_string(words.size()) + " words, expected " +
+            (kind.coordinate ? "rows, columns and number of entries" : "rows and columns"));
+  const long long rows = at.integer(words[0]), columns = at.integer(words[1]);
+  constexpr long long largest = std::numeric_limits<int>::max();
+  if (rows < 1 || columns < 1 || rows > largest || columns > largest)
+    at.fail("a matrix of " + std::to_string(rows) + " by " + std::to_string(columns) +
+            ", expected dimensions from 1 to " + std::to_string(largest));
+  if (kind.symmetry != Symmetry::general && rows != columns)
+    at.fail("a matrix of " + std::to_string(rows) + " by " + std::to_string(columns) +
+            ", expected a square one since the banner calls it (skew-)symmetric");
+  Size size{static_cast<int>(rows), static_cast<int>(columns), 0, at.line};
+  if (kind.coordinate)
+    size.entries = at.integer(words[2]);
+  else if (kind.symmetry == Symmetry::general)
+    size.entries = rows * columns;
+  else
+    size.entries = kind.symmetry == Symmetry::symmetric ? rows * (rows + 1) / 2 : rows * (rows - 1) / 2;
+  return size;
+}
+
+/// A size line of a few bytes must not make us allocate gigabytes. An entry takes at least three digits, two
+/// blanks and a line feed; in an array, a digit and a line feed. A matrix of very many rows needs entries
+/// too, for its column pointers cost 4 bytes each.
+void check_backed(const Kind& kind, const Size& size, std::size_t bytes_left, const Location& at) {
+  const std::size_t bytes_per_entry = kind.coordinate ? 6 : 2;
+  const auto most = static_cast<long long>((bytes_left + 1) / bytes_per_entry);  // the last LF may be missing
+  if (size.entries < 0 || size.entries > most)
+    at.fail("the size line announces " + std::to_string(size.entries) + " entries, expected at most the " +
+            std::to_string(most) + " that the rest of the file has room for");
+  constexpr long long unquestioned = 1'000'000, rows_per_entry = 1000, largest = 50'000'000;
+  const long long n = std::max(size.rows, size.columns);
+  if (n > largest || (n > unquestioned && n / rows_per_entry > size.entries))
+    at.fail("a matrix of " + std::to_string(size.rows) + " by " + std::to_string(size.columns) + " with " +
+            std::to_string(size.entries) + " entries, expected at most " + std::to_string(largest) +
+            " rows and, beyond " + std::to_string(unquestioned) + ", an entry for every " +
+            std::to_string(rows_per_entry));
+}
+
+}  // namespace
+
+bool has_matrix_market_banner(std::string_view text) {
+  LineReader lines({}, text);
+  return lines.next() && lowercase(lines.line().substr(0, banner.size())) == banner;
+}
+
+Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text) {
+  LineReader lines(source, text);
+  lines.next();
+  const Kind kind = parse_banner(lines.line(), lines.at());
+  Words words;
+  if (!next_data(lines, words)) lines.at().fail("the file ends here, expected a size line");
+  const Size size = parse_size(kind, words, lines.at());
+  check_backed(kind, size, lines.bytes_left(), lines.at());
+
+  MatrixBuilder builder(std::string(source), size.rows, size.columns, kind.symmetry);
+  if (kind.coordinate) builder.reserve(static_cast<std::size_t>(size.entries));
+  const auto value = [&](std::string_view word) {
+    return kind.integer ? static_cast<double>(lines.at().integer(word)) : lines.at().real(word);
+  };
+  // An array lists column after column, each from this row down.
+  const auto first_row = [&](int column) {
+    return kind.symmetry == Symmetry::general     ? 1
+           : kind.symmetry == Symmetry::symmetric ? column
+                                                  : column + 1;
+  };
+  int column = 1, row = first_row(column);
+  const std::size_t words_per_entry = kind.coordinate ? 3 : 1;
+  long long entries = 0;
+  for (; next_data(lines, words); ++entries) {
+    const Location at = lines.at();
+    if (entries == size.entries)
+      at.fail("one more entry than expected from the size on line " + std::to_string(size.line) +
+              ", which gives " + std::to_string(size.entries));
+    if (words.size() != words_per_entry)
+      at.fail("an entry of " + std::to_string(words.size()) + " words, expected " +
+              (kind.coordinate ? "row, column and value" : "one value"));
+    if (kind.coordinate) {
+      builder.add(at.line, at.integer(words[0]), at.integer(words[1]), value(words[2]));
+    } else {
+      if (const double entry = value(words[0]); entry != 0) builder.add(at.line, row, column, entry);
+      if (++row > size.rows) row = first_row(++column);
+    }
+  }
+  if (entries < size.entries)
+    lines.at().fail("the file ends after " + std::to_string(entries) + " entries, expected " +
+                    std::to_string(size.entries) + " from the size on line " + std::to_string(size.line));
+  return std::move(builder).build();
+}
+
+}  // namespace springstab

@@ -1,0 +1,19 @@
+// Matrix Market exchange format, https://math.nist.gov/MatrixMarket/formats.html: a banner, comments, a size
+// line, then one entry per line.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <string_view>
+
+namespace springstab {
+
+/// Whether the text begins with the format's banner, `%%MatrixMarket`.
+bool has_matrix_market_banner(std::string_view text);
+
+/// Parses coordinate and array matrices, real or integer; general, symmetric or skew-symmetric, which are
+/// expanded. Entries stored as zero stay in a coordinate matrix's pattern; an array matrix keeps what is not
+/// 0. Throws InputError, naming `source` and the line, for everything else, and before it allocates more than
+/// the text can back.
+Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text);
+
+}  // namespace springstab

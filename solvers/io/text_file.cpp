@@ -1,0 +1,110 @@
+#include "solvers/io/text_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+namespace {
+
+constexpr std::string_view blanks = " \t\v\f\r";
+
+/// std::from_chars does not know the sign '+'; here it may stand before a number, but not before another
+/// sign.
+std::string_view without_plus(std::string_view word) {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  return plus ? word.substr(1) : word;
+}
+
+}  // namespace
+
+std::string read_text_file(const std::string& path) {
+  const auto fail = [&path](const char* what, int error) {
+    throw InputError(path, 0,
+                     what + (" (" + std::generic_category().message(error)) + "), expected a text file");
+  };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) fail("cannot be opened", errno);
+  std::string text;
+  std::array<char, 1 << 16> buffer{};
+  while (const std::size_t read = std::fread(buffer.data(), 1, buffer.size(), file.get()))
+    text.append(buffer.data(), read);
+  if (std::ferror(file.get())) fail("cannot be read", errno);  // a directory opens, but does not read
+  if (text.empty()) throw InputError(path, 0, "the file is empty, expected text");
+  return text;
+}
+
+void Location::fail(const std::string& message) const {
+  throw InputError(std::string(source), line, message);
+}
+
+double Location::real(std::string_view word) const {
+  const std::string_view number = without_plus(word);
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error == std::errc::invalid_argument || end != number.data() + number.size())
+    fail(quoted(word) + " is not a number, expected one such as 1.5 or -2e-3");
+  if (error == std::errc::result_out_of_range)
+    fail(quoted(word) + " is out of range, expected a number that fits in double precision");
+  if (!std::isfinite(value)) fail(quoted(word) + " is not finite, expected a finite number");
+  return value;
+}
+
+long long Location::integer(std::string_view word) const {
+  const std::string_view number = without_plus(word);
+  long long value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error == std::errc::invalid_argument || end != number.data() + number.size())
+    fail(quoted(word) + " is not an integer, expected one such as 12");
+  if (error == std::errc::result_out_of_range)
+    fail(quoted(word) + " is out of range, expected an integer of at most 18 digits");
+  return value;
+}
+
+std::string quoted(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string shown(word.substr(0, longest));
+  std::replace_if(
+      shown.begin(), shown.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
+  return "'" + shown + (word.size() > longest ? "...'" : "'");
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = text.find_first_not_of(blanks);
+  if (begin == text.npos) return {};
+  return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
+}
+
+void append_words(std::string_view line, std::vector<std::string_view>& words) {
+  std::size_t end = 0;
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(blanks, end);
+    if (begin == line.npos) return;
+    end = std::min(line.find_first_of(blanks, begin), line.size());
+    words.push_back(line.substr(begin, end - begin));
+  }
+}
+
+LineReader::LineReader(std::string_view source, std::string_view text) : rest_(text), at_{source, 0} {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
+}
+
+bool LineReader::next() {
+  if (rest_.empty()) return false;
+  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  line_ = rest_.substr(0, end);
+  if (line_.ends_with('\r')) line_.remove_suffix(1);
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  ++at_.line;
+  return true;
+}
+
+}  // namespace springstab

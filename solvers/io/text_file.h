@@ -1,0 +1,54 @@
+// A text file in memory, its lines, words and numbers, and the place that an error must name: all that the
+// strict readers of this folder share. Numbers are read with std::from_chars, whatever the locale.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace springstab {
+
+/// The whole file. Throws InputError where there is nothing to read: missing, unreadable, a directory, empty.
+std::string read_text_file(const std::string& path);
+
+/// A line (from 1) of a source; what is read from it fails with an InputError that names it.
+struct Location {
+  std::string_view source;
+  long line = 0;
+
+  [[noreturn]] void fail(const std::string& message) const;
+
+  /// `word` as a finite number: "1", "+.5", "-2e-3", never "inf", "0x1" or "1,5".
+  double real(std::string_view word) const;
+  /// `word` as a decimal integer.
+  long long integer(std::string_view word) const;
+};
+
+/// `word` in quotes as a message can show it: shortened, in printable ASCII.
+std::string quoted(std::string_view word);
+
+/// `text` without its leading and trailing blanks.
+std::string_view trimmed(std::string_view text);
+
+/// Appends the blank-separated words of `line`, as views into it.
+void append_words(std::string_view line, std::vector<std::string_view>& words);
+
+/// Walks through a text line by line. Lines end in LF or CR LF; a UTF-8 byte order mark is skipped.
+/// Source and text must outlive the reader.
+class LineReader {
+ public:
+  LineReader(std::string_view source, std::string_view text);
+
+  /// Steps to the next line; false when there is none (line() and at() then stay at the last).
+  bool next();
+  std::string_view line() const { return line_; }
+  Location at() const { return at_; }
+  std::size_t bytes_left() const { return rest_.size(); }
+
+ private:
+  std::string_view rest_, line_;
+  Location at_;
+};
+
+}  // namespace springstab

@@ -1,0 +1,60 @@
+// The linear system of a net of particles at one state: lumped masses, a block-sparse stiffness matrix, Rayleigh
+// damping, and a damping matrix only where the net has damping of its own.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "solvers/linear/block_sparse_matrix.h"
+#include "solvers/linear/conjugate_gradient.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+/// D = d0 M + alpha K (paper Eq. 28 times M).
+struct RayleighDamping {
+  double d0 = 0;     // [1/s]
+  double alpha = 0;  // [s]
+};
+
+/// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone an
+/// acceleration is one block product, K (x + alpha v). Solves by block-Jacobi preconditioned conjugate gradients.
+class BlockLinearSystem final : public LinearSystem {
+ public:
+  /// mass: one per particle [kg]. K and C [N/m, N·s/m] start at zero and are filled through stiffness() and
+  /// own_damping(); pass no couplings for C when there is none.
+  BlockLinearSystem(std::vector<double> mass, RayleighDamping damping,
+                    std::span<const std::pair<int, int>> stiffness_couplings,
+                    std::optional<std::span<const std::pair<int, int>>> own_damping_couplings = std::nullopt);
+
+  BlockSparseMatrix& stiffness() { return stiffness_; }
+  const BlockSparseMatrix& stiffness() const { return stiffness_; }
+  BlockSparseMatrix* own_damping() { return own_damping_ ? &*own_damping_ : nullptr; }
+  const std::vector<double>& mass() const { return mass_; }
+  const RayleighDamping& damping() const { return damping_; }
+  void set_damping(const RayleighDamping& damping) { damping_ = damping; }
+  ConjugateGradientOptions solver;
+
+  Eigen::Index size() const override { return 3 * static_cast<Eigen::Index>(mass_.size()); }
+  void acceleration(const Vector& x, const Vector& v, Vector& out) override;
+  void stiffness_times(const Vector& u, Vector& out) override;
+  void damping_times(const Vector& u, Vector& out) override;
+  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override;
+  double kinetic_energy(const Vector& v) override;
+  double potential_energy(const Vector& x) override;
+
+ private:
+  bool invert_diagonal_blocks(double mass_factor, double stiffness_factor, double damping_factor);
+  template <class Scale>
+  void scale_by_mass(Vector& u, Scale scale) const;
+
+  std::vector<double> mass_;
+  RayleighDamping damping_;
+  BlockSparseMatrix stiffness_;
+  std::optional<BlockSparseMatrix> own_damping_;
+  ConjugateGradient conjugate_gradient_;
+  std::vector<double> inverse_blocks_;  // of the diagonal of H, 9 per particle
+  Vector w_, product_, rhs_;
+};
+
+}  // namespace springstab

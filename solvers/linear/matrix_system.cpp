@@ -1,0 +1,55 @@
+#include "solvers/linear/matrix_system.h"
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+namespace springstab {
+
+struct MatrixSystem::Factors {
+  Eigen::SimplicialLLT<SparseMatrix> mass, shifted;
+  double h = NAN;  // of `shifted`
+};
+
+MatrixSystem::MatrixSystem(StructuralMatrices matrices)
+    : matrices_(std::move(matrices)), factors_(std::make_unique<Factors>()) {
+  factors_->mass.compute(matrices_.mass);
+}
+
+MatrixSystem::~MatrixSystem() = default;
+
+void MatrixSystem::acceleration(const Vector& x, const Vector& v, Vector& out) {
+  force_.noalias() = -(matrices_.stiffness * x);
+  if (matrices_.has_damping()) force_.noalias() -= matrices_.damping * v;
+  out = factors_->mass.solve(force_);
+}
+
+void MatrixSystem::stiffness_times(const Vector& u, Vector& out) {
+  force_.noalias() = matrices_.stiffness * u;
+  out = factors_->mass.solve(force_);
+}
+
+void MatrixSystem::damping_times(const Vector& u, Vector& out) {
+  out.setZero(size());
+  if (!matrices_.has_damping()) return;
+  force_.noalias() = matrices_.damping * u;
+  out = factors_->mass.solve(force_);
+}
+
+SolveReport MatrixSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
+  if (factors_->h != h) {
+    SparseMatrix shifted = matrices_.mass + h * h * matrices_.stiffness;
+    if (matrices_.has_damping()) shifted += h * matrices_.damping;
+    factors_->shifted.compute(shifted);
+    factors_->h = h;
+  }
+  if (factors_->shifted.info() != Eigen::Success) return {.status = StepStatus::not_positive_definite};
+  force_.noalias() = matrices_.mass * rhs;
+  out = factors_->shifted.solve(force_);
+  return {};
+}
+
+double MatrixSystem::kinetic_energy(const Vector& v) { return v.dot(matrices_.mass * v) / 2; }
+
+double MatrixSystem::potential_energy(const Vector& x) { return x.dot(matrices_.stiffness * x) / 2; }
+
+}  // namespace springstab

@@ -1,0 +1,35 @@
+// A linear system given by its matrices: M x'' = -K x - D v, for structures read from files.
+#pragma once
+
+#include <memory>
+
+#include "solvers/linear/structural_matrices.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+/// Solves with M and with M + hD + h²K by sparse Cholesky factors; the latter is kept while h stays the same.
+class MatrixSystem final : public LinearSystem {
+ public:
+  explicit MatrixSystem(StructuralMatrices matrices);
+  ~MatrixSystem() override;
+
+  const StructuralMatrices& matrices() const { return matrices_; }
+
+  Eigen::Index size() const override { return matrices_.size(); }
+  void acceleration(const Vector& x, const Vector& v, Vector& out) override;
+  void stiffness_times(const Vector& u, Vector& out) override;
+  void damping_times(const Vector& u, Vector& out) override;
+  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override;
+  double kinetic_energy(const Vector& v) override;
+  double potential_energy(const Vector& x) override;
+
+ private:
+  struct Factors;
+
+  StructuralMatrices matrices_;
+  std::unique_ptr<Factors> factors_;
+  Vector force_;
+};
+
+}  // namespace springstab

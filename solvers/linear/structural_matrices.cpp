@@ -1,0 +1,126 @@
+#include "solvers/linear/structural_matrices.h"
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace springstab {
+namespace {
+
+using Triplet = Eigen::Triplet<double>;
+
+constexpr double symmetry_tolerance = 1e-10;  // of the largest entry; real matrices are symmetric to rounding
+constexpr Eigen::Index largest_condensed = 5000;
+
+std::string shape(const SparseMatrix& a) {
+  return std::to_string(a.rows()) + " x " + std::to_string(a.cols());
+}
+
+double largest_entry(const SparseMatrix& a) {
+  double largest = 0;
+  for (Eigen::Index k = 0; k < a.nonZeros(); ++k) largest = std::max(largest, std::abs(a.valuePtr()[k]));
+  return largest;
+}
+
+// The symmetric part of `a`, after checking that there is next to nothing else.
+SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size) {
+  a.makeCompressed();
+  if (a.rows() != a.cols() || a.rows() != size)
+    throw std::invalid_argument("the " + name + " matrix is " + shape(a) + ", expected " + std::to_string(size) +
+                                " x " + std::to_string(size));
+  for (Eigen::Index k = 0; k < a.nonZeros(); ++k)
+    if (!std::isfinite(a.valuePtr()[k]))
+      throw std::invalid_argument("the " + name + " matrix has an entry that is not finite");
+  const SparseMatrix transposed = a.transpose();
+  const double asymmetry = largest_entry(a - transposed), largest = largest_entry(a);
+  if (asymmetry > symmetry_tolerance * largest) {
+    std::ostringstream message;
+    message << "the " << name << " matrix is not symmetric (an entry differs from its mirror image by " << asymmetry
+            << ", the largest entry is " << largest << "), expected a symmetric one";
+    throw std::invalid_argument(message.str());
+  }
+  return 0.5 * (a + transposed);
+}
+
+// Rows and columns `keep` of a, in that order; -1 in `position` marks what is dropped.
+SparseMatrix extract(const SparseMatrix& a, const std::vector<Eigen::Index>& row_position,
+                     const std::vector<Eigen::Index>& col_position, Eigen::Index rows, Eigen::Index cols) {
+  std::vector<Triplet> triplets;
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      if (row_position[it.row()] >= 0 && col_position[it.col()] >= 0)
+        triplets.emplace_back(static_cast<int>(row_position[it.row()]), static_cast<int>(col_position[it.col()]),
+                              it.value());
+  SparseMatrix part(rows, cols);
+  part.setFromTriplets(triplets.begin(), triplets.end());
+  return part;
+}
+
+void condense(StructuralMatrices& s) {
+  const Eigen::Index n = s.size();
+  std::vector<Eigen::Index> heavy(n, -1), massless(n, -1);
+  Eigen::Index a = 0, b = 0;
+  const Eigen::VectorXd row_size = s.mass.cwiseAbs() * Eigen::VectorXd::Ones(n);
+  for (Eigen::Index i = 0; i < n; ++i) (row_size[i] > 0 ? heavy[i] = a++ : massless[i] = b++);
+  if (b == 0) return;
+  if (a == 0) throw std::invalid_argument("the mass matrix is zero, expected some mass");
+  if (a > largest_condensed)
+    throw std::invalid_argument("eliminating " + std::to_string(b) + " massless unknowns would fill a matrix of " +
+                                std::to_string(a) + " unknowns, expected at most " +
+                                std::to_string(largest_condensed));
+  if (s.has_damping()) {
+    const Eigen::VectorXd damped = s.damping.cwiseAbs() * Eigen::VectorXd::Ones(n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (massless[i] >= 0 && damped[i] > 0)
+        throw std::invalid_argument("unknown " + std::to_string(i + 1) +
+                                    " has damping but no mass, expected massless unknowns without damping");
+  }
+
+  const SparseMatrix k_ab = extract(s.stiffness, heavy, massless, a, b);
+  const SparseMatrix k_bb = extract(s.stiffness, massless, massless, b, b);
+  const Eigen::SimplicialLLT<SparseMatrix> factor(k_bb);
+  if (factor.info() != Eigen::Success)
+    throw std::invalid_argument("the stiffness between the " + std::to_string(b) +
+                                " massless unknowns is not positive definite, expected that they are held");
+  const Eigen::MatrixXd correction = k_ab * factor.solve(Eigen::MatrixXd(k_ab.transpose()));
+  const SparseMatrix k_aa = extract(s.stiffness, heavy, heavy, a, a);
+  s.stiffness = k_aa - SparseMatrix((0.5 * (correction + correction.transpose())).sparseView(0.0, 0.0));
+  s.mass = extract(s.mass, heavy, heavy, a, a);
+  if (s.has_damping()) s.damping = extract(s.damping, heavy, heavy, a, a);
+  s.condensed = b;
+}
+
+}  // namespace
+
+bool is_diagonal(const SparseMatrix& a) {
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      if (it.row() != it.col() && it.value() != 0) return false;
+  return true;
+}
+
+StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping) {
+  const Eigen::Index n = stiffness.rows();
+  if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
+  if (mass.size() == 0) {
+    mass.resize(n, n);
+    mass.setIdentity();
+  }
+  StructuralMatrices s;
+  s.stiffness = checked(std::move(stiffness), "stiffness", n);
+  s.mass = checked(std::move(mass), "mass", n);
+  if (damping.size() > 0) s.damping = checked(std::move(damping), "damping", n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (s.mass.coeff(i, i) < 0)
+      throw std::invalid_argument("the mass of unknown " + std::to_string(i + 1) + " is " +
+                                  std::to_string(s.mass.coeff(i, i)) + ", expected no negative mass");
+  condense(s);
+  if (Eigen::SimplicialLLT<SparseMatrix>(s.mass).info() != Eigen::Success)
+    throw std::invalid_argument("the mass matrix is not positive definite, expected a positive definite one");
+  return s;
+}
+
+}  // namespace springstab

@@ -1,0 +1,34 @@
+// Implicit (backward) Euler with one Newton step, paper Eq. 16 and the course notes' Eqs. 16/19, written for
+// the velocity's change: with K and D of the state,
+//     (1 + hD' + h²K') (v⁺ - v) = h (a(x, v) - hK'v),   x⁺ = x + hv⁺.
+// (Multiply out and the notes' (M + hD + h²K) v⁺ = Mv + hf + hDv follows; their D and K have the other sign.)
+#pragma once
+
+#include "solvers/methods/method_info.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+template <class V>
+class ImplicitEuler {
+ public:
+  static constexpr MethodInfo info{"implicit-euler", "implicit Euler", 1, true};
+
+  template <Linearizable<V> System>
+  StepStatus step(System& system, double h, State<V>& state) {
+    system.acceleration(state.x, state.v, a_);
+    auto& linear = system.linearized(state.x, state.v);
+    linear.stiffness_times(state.v, v_);
+    a_ = h * (a_ - h * v_);
+    const SolveReport solved = linear.solve_shifted(h, a_, v_);
+    if (solved.status != StepStatus::done) return solved.status;
+    v_ = state.v + v_;
+    x_ = state.x + h * v_;
+    return commit(state, x_, v_);
+  }
+
+ private:
+  V x_, v_, a_;
+};
+
+}  // namespace springstab

@@ -1,0 +1,15 @@
+// What a method says of itself; everything else about it is computed from its step.
+#pragma once
+
+#include <string_view>
+
+namespace springstab {
+
+struct MethodInfo {
+  std::string_view name;   // as typed on the command line
+  std::string_view title;  // as printed in tables and figures
+  int order;               // of accuracy in h
+  bool implicit;           // whether a step linearizes and solves
+};
+
+}  // namespace springstab

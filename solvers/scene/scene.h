@@ -1,0 +1,65 @@
+// A scene: particles, some of them pinned, and the sum of what acts on them. The unknowns are the free
+// particles' coordinates, three per particle in the order of their numbers; pinned ones do not appear.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "solvers/linear/block_linear_system.h"
+#include "solvers/scene/spring_cloth.h"
+#include "solvers/scene/terms.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+/// M x'' = f_elastic(x) + M g - d0 M v - alpha K(x) v - C(x) v. Rayleigh damping uses the exact K at the positions
+/// that a force is evaluated at; the change of the damping matrices with x is neglected in the linearization.
+class Scene final : public System {
+ public:
+  /// A net with the given particles pinned at their rest positions. `pinned` ascends without repeats.
+  /// Throws std::invalid_argument for an index out of range and when nothing is left to move.
+  Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
+        RayleighDamping damping);
+
+  int particles() const { return static_cast<int>(number_.size()); }
+  int free_particles() const { return free_count_; }
+  const RayleighDamping& damping() const { return damping_; }
+  bool has_own_damping() const { return !damping_terms_.empty(); }
+  double total_free_mass() const;
+  const Eigen::Vector3d& gravity() const { return gravity_; }
+
+  void set_damping(const RayleighDamping& damping);
+
+  /// The free particles at rest, not moving.
+  State<Vector> rest_state() const;
+  /// Moves the pinned particles; one position per pinned particle, in order.
+  void place_pinned(const std::vector<Eigen::Vector3d>& positions);
+  /// Where every particle is, by its original number.
+  std::vector<Eigen::Vector3d> positions(const Vector& x) const;
+
+  /// Of the conjugate gradients in implicit methods.
+  ConjugateGradientOptions& solver() { return linear_->solver; }
+
+  Eigen::Index size() const override { return 3 * static_cast<Eigen::Index>(free_count_); }
+  void acceleration(const Vector& x, const Vector& v, Vector& out) override;
+  BlockLinearSystem& linearized(const Vector& x, const Vector& v) override;
+  double kinetic_energy(const Vector& v) override { return linear_->kinetic_energy(v); }
+  double potential_energy(const Vector& x) override;
+
+ private:
+  ParticleField position_field(const Vector& x) const;
+
+  int free_count_ = 0;
+  std::vector<int> number_;         // particle -> its place: free ones first, then pinned ones
+  std::vector<double> rest_;        // positions of the free particles
+  std::vector<double> pinned_;      // positions of the pinned ones
+  std::vector<double> pinned_velocity_;  // zeros
+  Eigen::Vector3d gravity_;
+  RayleighDamping damping_;
+  std::vector<std::unique_ptr<ElasticTerm>> elastic_terms_;
+  std::vector<std::unique_ptr<DampingTerm>> damping_terms_;
+  std::unique_ptr<BlockLinearSystem> linear_;
+};
+
+}  // namespace springstab

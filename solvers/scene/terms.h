@@ -1,0 +1,52 @@
+// The terms that a scene sums: energies and dampings over its particles. One virtual call per term and
+// evaluation, plain loops inside. A scene without a term does not have the object.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "solvers/linear/block_sparse_matrix.h"
+
+namespace springstab {
+
+/// Three numbers per particle: the free particles' from the state, then the pinned ones'.
+struct ParticleField {
+  const double* free;
+  const double* pinned;
+  int free_count;
+
+  const double* operator[](int particle) const {
+    return particle < free_count ? free + 3 * static_cast<long>(particle)
+                                 : pinned + 3 * static_cast<long>(particle - free_count);
+  }
+};
+
+/// Pairs of free particles that a term couples.
+using Couplings = std::vector<std::pair<int, int>>;
+
+/// An elastic energy E(x) [J]. Forces and products are added for free particles only, 3 per particle.
+class ElasticTerm {
+ public:
+  virtual ~ElasticTerm() = default;
+  virtual double energy(const ParticleField& x) const = 0;
+  /// force -= ∂E/∂x [N].
+  virtual void add_force(const ParticleField& x, double* force) const = 0;
+  /// out += scale · K(x) u with K = ∂²E/∂x², exact, not projected; u and out have 3 entries per free particle.
+  virtual void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const = 0;
+  virtual Couplings couplings() const = 0;
+  /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
+  virtual void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;
+};
+
+/// A damping force -C(x) v of the material, with C symmetric positive semidefinite.
+class DampingTerm {
+ public:
+  virtual ~DampingTerm() = default;
+  /// force -= C(x) v [N].
+  virtual void add_force(const ParticleField& x, const ParticleField& v, double* force) const = 0;
+  virtual Couplings couplings() const = 0;
+  /// damping += C(x) [N·s/m]. The change of C with x is neglected, as everywhere.
+  virtual void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const = 0;
+};
+
+}  // namespace springstab

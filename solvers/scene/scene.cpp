@@ -131,10 +131,14 @@ BlockLinearSystem& Scene::linearized(const Vector& x, const Vector&) {
   return *linear_;
 }
 
-double Scene::potential_energy(const Vector& x) {
-  const ParticleField positions = position_field(x);
+double Scene::elastic_energy(const Vector& x) const {
   double energy = 0;
-  for (const auto& term : elastic_terms_) energy += term->energy(positions);
+  for (const auto& term : elastic_terms_) energy += term->energy(position_field(x));
+  return energy;
+}
+
+double Scene::potential_energy(const Vector& x) {
+  double energy = elastic_energy(x);
   for (int i = 0; i < free_count_; ++i)
     energy -= linear_->mass()[i] * gravity_.dot(x.segment<3>(3 * static_cast<long>(i)));
   return energy;

@@ -45,6 +45,7 @@ class Scene final : public System {
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
   BlockLinearSystem& linearized(const Vector& x, const Vector& v) override;
   double kinetic_energy(const Vector& v) override { return linear_->kinetic_energy(v); }
+  double elastic_energy(const Vector& x) const;
   double potential_energy(const Vector& x) override;
 
  private:

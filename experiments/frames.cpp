@@ -1,0 +1,41 @@
+#include "experiments/frames.h"
+
+#include "experiments/output.h"
+
+namespace springstab {
+namespace {
+
+void write_obj(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<std::vector<int>>& faces) {
+  for (const Eigen::Vector3d& p : positions) out << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+  for (const std::vector<int>& face : faces) {
+    out << 'f';
+    for (int i : face) out << ' ' << i + 1;
+    out << '\n';
+  }
+}
+
+void write_vtk(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<std::vector<int>>& faces) {
+  out << "# vtk DataFile Version 3.0\nspringstab\nASCII\nDATASET POLYDATA\nPOINTS " << positions.size() << " double\n";
+  for (const Eigen::Vector3d& p : positions) out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+  std::size_t numbers = 0;
+  for (const std::vector<int>& face : faces) numbers += face.size() + 1;
+  out << "POLYGONS " << faces.size() << ' ' << numbers << '\n';
+  for (const std::vector<int>& face : faces) {
+    out << face.size();
+    for (int i : face) out << ' ' << i;
+    out << '\n';
+  }
+}
+
+}  // namespace
+
+void write_frame(const std::string& folder, const std::string& format, int frame,
+                 const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces) {
+  OutputFile file(folder + text("/frame_%05d.%s", frame, format.c_str()));
+  (format == "vtk" ? write_vtk : write_obj)(file.stream(), positions, faces);
+  file.commit();
+}
+
+}  // namespace springstab

@@ -1,0 +1,15 @@
+// Frames of a run, one file each: a mesh as OBJ or legacy VTK, or a row of a CSV file for matrices.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace springstab {
+
+/// DIR/frame_00012.obj or .vtk: positions of all particles and the faces of the mesh.
+/// Throws InputError if it cannot be written.
+void write_frame(const std::string& folder, const std::string& format, int frame,
+                 const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces);
+
+}  // namespace springstab

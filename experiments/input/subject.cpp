@@ -1,0 +1,219 @@
+#include "experiments/input/subject.h"
+
+#include <algorithm>
+#include <charconv>
+#include <random>
+
+#include "solvers/io/input_error.h"
+#include "solvers/io/matrix_file.h"
+#include "solvers/io/obj.h"
+
+namespace springstab {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() && std::equal(ending.rbegin(), ending.rend(), text.rbegin(), [](char a, char b) {
+           return a == std::tolower(static_cast<unsigned char>(b));
+         });
+}
+
+std::vector<std::vector<int>> grid_faces(const Grid& grid) {
+  std::vector<std::vector<int>> faces;
+  for (int i = 0; i + 1 < grid.rows; ++i)
+    for (int j = 0; j + 1 < grid.columns; ++j) {
+      const int p = i * grid.columns + j;
+      faces.push_back({p, p + 1, p + grid.columns + 1, p + grid.columns});
+    }
+  return faces;
+}
+
+// Particle numbers of the pins, ascending.
+std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles) {
+  const auto wrong = [&](const std::string& message) { return InputError(pins.source, pins.line, message); };
+  if (pins.kind == Pins::Kind::none) return {};
+  if (pins.kind == Pins::Kind::indices) {
+    if (!pins.indices.empty() && pins.indices.back() >= particles)
+      throw wrong("pinned particle " + std::to_string(pins.indices.back()) + " does not exist, expected 0 to " +
+                  std::to_string(particles - 1));
+    return pins.indices;
+  }
+  if (!grid) throw wrong("'first-row' and 'corners' are places on a grid, expected particle numbers for a mesh");
+  std::vector<int> numbers;
+  if (pins.kind == Pins::Kind::first_row) {
+    for (int j = 0; j < grid->columns; ++j) numbers.push_back(j);
+  } else {
+    const int last = particles - 1;
+    numbers = {0, grid->columns - 1, last - (grid->columns - 1), last};
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  }
+  return numbers;
+}
+
+SceneDescription describe(const InputOptions& options) {
+  if (ends_with(options.file, ".json")) {
+    if (options.spacing || !options.material.empty() || !options.pin.empty())
+      throw InputError(options.file, 0, "--spacing, --material and --pin stand in the scene file itself");
+    return read_scene_file(options.file);
+  }
+  SceneDescription description;
+  if (options.grid.empty()) {
+    if (options.spacing) throw InputError("--spacing", 0, "is for --grid only");
+    description.geometry = options.file;
+  } else {
+    Grid grid = parse_grid(options.grid, "--grid");
+    if (options.spacing) grid.spacing = *options.spacing;
+    check(grid, "--grid");
+    description.geometry = grid;
+  }
+  if (!options.material.empty()) description.material = named_material(options.material, "--material", 0);
+  if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
+  return description;
+}
+
+// Names the file in what the matrix library says.
+template <class Build>
+auto naming(const std::string& source, Build build) {
+  try {
+    return build();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(source, 0, error.what());
+  }
+}
+
+}  // namespace
+
+Grid parse_grid(const std::string& text, const std::string& source) {
+  Grid grid;
+  const char* end = text.data() + text.size();
+  const auto rows = std::from_chars(text.data(), end, grid.rows);
+  const bool cross = rows.ec == std::errc() && rows.ptr != end && (*rows.ptr == 'x' || *rows.ptr == 'X');
+  const auto columns = cross ? std::from_chars(rows.ptr + 1, end, grid.columns) : rows;
+  if (!cross || columns.ec != std::errc() || columns.ptr != end)
+    throw InputError(source, 0, "'" + text + "' is not a size, expected ROWSxCOLUMNS like 32x32");
+  check(grid, source);
+  return grid;
+}
+
+Subject::Subject(const InputOptions& options) {
+  const int given = !options.file.empty() + !options.grid.empty() + !options.stiffness.empty();
+  if (given != 1)
+    throw InputError("input", 0,
+                     std::string(given == 0 ? "nothing was given" : "more than one was given") +
+                         ", expected one of SCENE.json, MESH.obj, --grid NxM or --stiffness K.mtx");
+  if (options.stiffness.empty()) {
+    if (!options.mass.empty() || !options.damping_matrix.empty())
+      throw InputError("input", 0, "--mass and --damping-matrix go with --stiffness");
+    build_scene(describe(options));
+  } else {
+    build_matrices(options);
+  }
+}
+
+void Subject::build_matrices(const InputOptions& options) {
+  if (options.spacing || !options.material.empty() || !options.pin.empty())
+    throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
+  const auto read = [](const std::string& path) { return path.empty() ? SparseMatrix() : read_matrix(path); };
+  SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
+  matrices_ = naming(options.stiffness, [&] {
+    return std::make_unique<MatrixSystem>(prepare(std::move(k), std::move(m), std::move(d)));
+  });
+}
+
+void Subject::build_scene(const SceneDescription& description) {
+  SpringNet net;
+  const Grid* grid = std::get_if<Grid>(&description.geometry);
+  std::string source = "--grid";
+  if (grid) {
+    net = make_net(*grid, description.material);
+    faces_ = grid_faces(*grid);
+  } else {
+    source = std::get<std::string>(description.geometry);
+    const Mesh mesh = read_obj(source);
+    net = make_net(mesh, description.material);
+    for (int f = 0; f < mesh.faces(); ++f) faces_.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
+  }
+  rayleigh_ = description.damping;
+  initial_ = description.initial;
+  const std::vector<int> pinned = resolve(description.pins, grid, static_cast<int>(net.rest.size()));
+  const std::string pins_source = description.pins.source.empty() ? source : description.pins.source;
+  scene_ = naming(pins_source, [&] {
+    return std::make_unique<Scene>(net, pinned, description.gravity,
+                                   RayleighDamping{rayleigh_.d0, rayleigh_.alpha.value_or(0)});
+  });
+  std::vector<Eigen::Vector3d> places;
+  for (int i : pinned) places.push_back(initial_.stretch.cwiseProduct(net.rest[i]));
+  scene_->place_pinned(places);
+}
+
+System& Subject::system() {
+  if (scene_) return *scene_;
+  return *matrices_;
+}
+
+State<Vector> Subject::initial_state(std::uint64_t seed) {
+  if (scene_) {
+    State<Vector> state = scene_->rest_state();
+    for (Eigen::Index i = 0; i < state.x.size(); ++i) {
+      state.x[i] *= initial_.stretch[i % 3];
+      state.v[i] = initial_.velocity[i % 3];
+    }
+    return state;
+  }
+  State<Vector> state{Vector(matrices_->size()), Vector::Zero(matrices_->size())};
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (double& entry : state.x) entry = uniform(random);
+  state.x /= std::sqrt(2 * matrices_->kinetic_energy(state.x));  // xᵀMx = 1
+  return state;
+}
+
+EnergyWatch Subject::energy_watch(const State<Vector>& start) {
+  EnergyWatch watch;
+  watch.initial_energy = system().kinetic_energy(start.v);
+  if (scene_) {
+    watch.initial_energy += scene_->elastic_energy(start.x);
+    watch.gravity = scene_->gravity().norm();
+    watch.mass = scene_->total_free_mass();
+  } else {
+    watch.initial_energy += matrices_->potential_energy(start.x);
+  }
+  return watch;
+}
+
+StructuralMatrices Subject::structure() {
+  if (matrices_) return matrices_->matrices();
+  const State<Vector> start = initial_state(0);
+  const BlockLinearSystem& linear = scene_->linearized(start.x, start.v);
+  StructuralMatrices s;
+  s.stiffness = linear.stiffness().to_sparse();
+  Vector mass(scene_->size());
+  for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = linear.mass()[i / 3];
+  s.mass = SparseMatrix(mass.asDiagonal());
+  return s;
+}
+
+DampingModel Subject::damping() {
+  if (matrices_) return classify_damping(matrices_->matrices());
+  using Kind = DampingModel::Kind;
+  const double alpha = rayleigh_.alpha.value_or(0);
+  const Kind kind = scene_->has_own_damping()            ? Kind::general
+                    : !rayleigh_.alpha                   ? Kind::designed
+                    : rayleigh_.d0 == 0 && alpha == 0 ? Kind::none
+                                                         : Kind::rayleigh;
+  return {kind, rayleigh_.d0, alpha};
+}
+
+void Subject::design_damping() {
+  if (!scene_) throw InputError("--damping", 0, "'designed' is for scenes, expected 'own' for matrices");
+  if (scene_->has_own_damping())
+    throw InputError("--damping", 0, "'designed' is not possible beside the springs' own damping, expected 'own'");
+  rayleigh_.alpha.reset();
+}
+
+void Subject::set_alpha(double alpha) {
+  rayleigh_.alpha = alpha;
+  scene_->set_damping({rayleigh_.d0, alpha});
+}
+
+}  // namespace springstab

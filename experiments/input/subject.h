@@ -1,0 +1,66 @@
+// What a command works on: the INPUT of the command line, resolved. Either a scene (from a file, a mesh or a
+// grid) or a system of matrices.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "analysis/method_limits.h"
+#include "experiments/input/scene_description.h"
+#include "solvers/linear/matrix_system.h"
+#include "solvers/scene/scene.h"
+#include "solvers/simulation.h"
+
+namespace springstab {
+
+/// INPUT as typed; empty strings were not given. Exactly one of file, grid and stiffness must be.
+struct InputOptions {
+  std::string file;                          // SCENE.json or MESH.obj
+  std::string grid;                          // "NxM"
+  std::optional<double> spacing;             // [m], with grid
+  std::string material, pin;                 // with grid or MESH.obj
+  std::string stiffness, mass, damping_matrix;
+};
+
+/// A system with its start and everything that limits and reports need to know about it.
+class Subject {
+ public:
+  /// Throws InputError or std::invalid_argument when the input is unusable.
+  explicit Subject(const InputOptions& options);
+
+  System& system();
+  Scene* scene() { return scene_.get(); }              // null for matrices
+  MatrixSystem* matrices() { return matrices_.get(); }  // null for scenes
+
+  /// Faces of the mesh, for pictures: particle numbers; empty for matrices and nets without faces.
+  const std::vector<std::vector<int>>& faces() const { return faces_; }
+
+  /// The start: a scene's own; for matrices a random displacement of unit M-norm, at rest.
+  State<Vector> initial_state(std::uint64_t seed);
+  EnergyWatch energy_watch(const State<Vector>& start);
+
+  /// K and M at the start, and what kind of damping there is.
+  StructuralMatrices structure();
+  DampingModel damping();
+
+  /// Leaves alpha to the design, as "alpha": "designed" does. Throws InputError for matrices.
+  void design_damping();
+  /// Fixes alpha where it was left to the design.
+  void set_alpha(double alpha);
+
+ private:
+  void build_scene(const SceneDescription& description);
+  void build_matrices(const InputOptions& options);
+
+  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<MatrixSystem> matrices_;
+  std::vector<std::vector<int>> faces_;
+  RayleighDescription rayleigh_;
+  InitialDescription initial_;
+};
+
+/// "NxM" as a grid. Throws InputError(source, ...).
+Grid parse_grid(const std::string& text, const std::string& source);
+
+}  // namespace springstab

@@ -1,0 +1,87 @@
+#include "experiments/output.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+
+Json number(double value) {
+  if (std::isnan(value)) throw std::logic_error("a result is not a number");
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
+
+std::string text(const char* format, ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  std::string result(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, format, arguments)), '\0');
+  std::vsnprintf(result.data(), result.size() + 1, format, again);
+  va_end(again);
+  va_end(arguments);
+  return result;
+}
+
+OutputFile::OutputFile(const std::string& path)
+    : path_(path), aside_(path + ".part" + std::to_string(getpid())), stream_(aside_) {
+  if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
+  stream_.precision(17);
+}
+
+OutputFile::~OutputFile() {
+  if (committed_) return;
+  stream_.close();
+  std::error_code ignored;
+  std::filesystem::remove(aside_, ignored);
+}
+
+void OutputFile::commit() {
+  stream_.close();
+  if (!stream_) throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno));
+  std::error_code error;
+  std::filesystem::rename(aside_, path_, error);
+  if (error) throw InputError(path_, 0, "cannot be written: " + error.message());
+  committed_ = true;
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error || !std::filesystem::is_directory(path))
+    throw InputError(path, 0, "cannot be made a folder" + (error ? ": " + error.message() : std::string()));
+}
+
+Progress::Progress(std::string label, bool quiet)
+    : label_(std::move(label)),
+      enabled_(!quiet && isatty(STDERR_FILENO)),
+      start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
+
+Progress::~Progress() {
+  if (shown_) std::cerr << "\r\033[K" << std::flush;
+}
+
+void Progress::update(double fraction) {
+  if (!enabled_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - start_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  shown_ = true;
+  const int filled = static_cast<int>(30 * fraction);
+  std::cerr << '\r' << label_ << " [" << std::string(filled, '#') << std::string(30 - filled, ' ') << "] "
+            << static_cast<int>(100 * fraction) << " %" << std::flush;
+}
+
+}  // namespace springstab

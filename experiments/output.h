@@ -1,0 +1,59 @@
+// How results leave the command: JSON with full precision, tables, files that are never half-written,
+// and a progress bar.
+#pragma once
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace springstab {
+
+using Json = nlohmann::ordered_json;
+
+/// A number for JSON: ∞ becomes "inf", nothing becomes null; NaN throws std::logic_error.
+Json number(double value);
+Json number(const std::optional<double>& value);
+
+/// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...);
+
+/// A file that appears whole or not at all: written beside its place and renamed by commit().
+class OutputFile {
+ public:
+  /// Throws InputError if the file cannot be created.
+  explicit OutputFile(const std::string& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  std::ostream& stream() { return stream_; }
+  /// Throws InputError if anything could not be written.
+  void commit();
+
+ private:
+  std::string path_, aside_;
+  std::ofstream stream_;
+  bool committed_ = false;
+};
+
+/// Creates the folder and its parents. Throws InputError if that is not possible.
+void make_folder(const std::string& path);
+
+/// A bar on stderr for what takes more than a second, if stderr is a terminal and not `quiet`.
+class Progress {
+ public:
+  Progress(std::string label, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void update(double fraction);
+
+ private:
+  std::string label_;
+  bool enabled_, shown_ = false;
+  std::chrono::steady_clock::time_point start_, last_;
+};
+
+}  // namespace springstab

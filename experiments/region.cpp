@@ -1,0 +1,201 @@
+// `springstab region`: the stable region of one method in the X-Y plane.
+#include "experiments/region.h"
+
+#include <charconv>
+#include <cmath>
+#include <iostream>
+
+#include "analysis/amplification.h"
+#include "experiments/experiments.h"
+#include "experiments/output.h"
+#include "experiments/parallel.h"
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+namespace {
+
+constexpr double neutral_band = 1e-9;  // |ρ - 1| at most this counts as neutral
+constexpr long largest_grid = 100'000'000;
+
+struct CellCentres {
+  std::vector<double> x, y;
+
+  explicit CellCentres(const CellGrid& grid) {
+    const auto cells = static_cast<std::size_t>(grid.nx) * grid.ny;
+    x.reserve(cells);
+    y.reserve(cells);
+    for (int j = 0; j < grid.ny; ++j)
+      for (int i = 0; i < grid.nx; ++i) {
+        x.push_back(grid.x(i));
+        y.push_back(grid.y(j));
+      }
+  }
+};
+
+const char* name(Bound bound) {
+  switch (bound) {
+    case Bound::complex_pair:
+      return "complex_pair";
+    case Bound::plus_one:
+      return "lambda=1";
+    case Bound::minus_one:
+      return "lambda=-1";
+    case Bound::window:
+      break;
+  }
+  return "window";
+}
+
+// "A:B" as a range of an axis; keeps what is there when nothing was given.
+void parse_range(const std::string& range, const std::string& option, double& low, double& high) {
+  if (range.empty()) return;
+  const char* end = range.data() + range.size();
+  const auto first = std::from_chars(range.data(), end, low);
+  const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+  const auto second = colon ? std::from_chars(first.ptr + 1, end, high) : first;
+  if (!colon || second.ec != std::errc() || second.ptr != end || !(low < high) || !std::isfinite(high - low))
+    throw InputError(option, 0, "'" + range + "' is not a range, expected A:B with A < B like -0.5:5");
+}
+
+}  // namespace
+
+std::vector<double> spectral_radii(std::string_view method, const CellGrid& grid, int threads) {
+  const CellCentres cells(grid);
+  std::vector<double> radii(cells.x.size());
+  parallel_ranges(static_cast<long>(radii.size()), 8, threads, [&](long first, long last) {
+    const auto part = [&](auto& v) { return std::span(v).subspan(first, last - first); };
+    spectral_radius(method, part(cells.x), part(cells.y), part(radii));
+  });
+  return radii;
+}
+
+void write_raster(const std::string& path, const CellGrid& grid, const std::vector<double>& radii) {
+  OutputFile file(path);
+  file.stream() << "x,y,spectral_radius\n";
+  for (int j = 0; j < grid.ny; ++j)
+    for (int i = 0; i < grid.nx; ++i)
+      file.stream() << grid.x(i) << ',' << grid.y(j) << ',' << radii[static_cast<std::size_t>(j) * grid.nx + i]
+                    << '\n';
+  file.commit();
+}
+
+void write_boundary(const std::string& path, const StabilityRegion& region, const Window& window) {
+  OutputFile file(path);
+  file.stream() << "condition,x,y\n";
+  for (const BoundaryArc& arc : region.boundary(window)) {
+    for (std::size_t i = 0; i < arc.x.size(); ++i)
+      file.stream() << name(arc.bound) << ',' << arc.x[i] << ',' << arc.y[i] << '\n';
+    file.stream() << '\n';
+  }
+  file.commit();
+}
+
+void write_pieces(const std::string& path, const StabilityRegion& region, const Window& window) {
+  OutputFile file(path);
+  file.stream() << "x,y_lower,y_upper\n";
+  for (const RegionPiece& piece : region.pieces(window)) {
+    for (std::size_t i = 0; i < piece.x.size(); ++i)
+      file.stream() << piece.x[i] << ',' << piece.y_lower[i] << ',' << piece.y_upper[i] << '\n';
+    file.stream() << '\n';
+  }
+  file.commit();
+}
+
+CellComparison compare_cells(std::string_view method, const CellGrid& grid, long steps, int threads,
+                             const std::string& path) {
+  const CellCentres cells(grid);
+  const std::vector<double> radii = spectral_radii(method, grid, threads);
+  CellComparison result{.cells = static_cast<long>(radii.size()), .steps = steps};
+  result.band = 2 * std::log(result.threshold) / static_cast<double>(steps);
+
+  std::vector<CellFate> fates(radii.size());
+  parallel_ranges(result.cells, 8, threads, [&](long first, long last) {
+    const auto part = [&](auto& v) { return std::span(v).subspan(first, last - first); };
+    simulate_cells(method, part(cells.x), part(cells.y), steps, result.threshold, part(fates));
+  });
+  for (std::size_t i = 0; i < fates.size(); ++i) {
+    const bool diverged = fates[i] == CellFate::diverged;
+    const bool disagrees = diverged != (radii[i] > 1 + neutral_band);
+    result.diverged += diverged;
+    result.disagreements += disagrees;
+    result.outside_band += disagrees && !(std::abs(radii[i] - 1) < result.band);
+  }
+  if (!path.empty()) {
+    OutputFile file(path);
+    file.stream() << "x,y,spectral_radius,diverged\n";
+    for (std::size_t i = 0; i < fates.size(); ++i)
+      file.stream() << cells.x[i] << ',' << cells.y[i] << ',' << radii[i] << ','
+                    << (fates[i] == CellFate::diverged) << '\n';
+    file.commit();
+  }
+  return result;
+}
+
+int run_region(const CommonOptions& common, const RegionOptions& options) {
+  const StabilityRegion& region = stability_region(options.method);
+  CellGrid grid{region.natural_window(0.1), options.nx, options.ny};
+  parse_range(options.x, "--x", grid.window.x_min, grid.window.x_max);
+  parse_range(options.y, "--y", grid.window.y_min, grid.window.y_max);
+  if (options.nx < 1 || options.ny < 1 || static_cast<long>(options.nx) * options.ny > largest_grid)
+    throw InputError("--nx, --ny", 0,
+                     text("a grid of %d x %d cells is not possible, expected 1 to %ld cells", options.nx, options.ny,
+                          largest_grid));
+
+  const std::vector<double> radii = spectral_radii(options.method, grid, common.threads);
+  long stable = 0, neutral = 0;
+  for (double rho : radii) {
+    stable += rho < 1 - neutral_band;
+    neutral += std::abs(rho - 1) <= neutral_band;
+  }
+  if (!options.raster.empty()) write_raster(options.raster, grid, radii);
+  if (!options.boundary.empty()) write_boundary(options.boundary, region, grid.window);
+  if (!options.pieces.empty()) write_pieces(options.pieces, region, grid.window);
+
+  const RegionConstants& c = region.constants();
+  const double area = region.area(grid.window);
+  Json report{{"method", options.method},
+              {"window", {{"x", {grid.window.x_min, grid.window.x_max}}, {"y", {grid.window.y_min, grid.window.y_max}}}},
+              {"y_max", number(c.y_max)},
+              {"x_at_y_max", std::isfinite(c.y_max) ? number(c.x_at_y_max) : Json()},
+              {"y_max_attained", c.y_max_attained},
+              {"cells", radii.size()},
+              {"stable_cells", stable},
+              {"neutral_cells", neutral},
+              {"area", number(area)}};
+  if (options.simulated_cells > 0) {
+    const CellGrid coarse{grid.window, options.simulated_cells, options.simulated_cells};
+    const CellComparison cells =
+        compare_cells(options.method, coarse, options.cell_steps, common.threads, options.cells);
+    report["simulated"] = {{"cells", cells.cells},
+                           {"steps", cells.steps},
+                           {"threshold", cells.threshold},
+                           {"diverged", cells.diverged},
+                           {"disagreements", cells.disagreements},
+                           {"band", cells.band},
+                           {"outside_band", cells.outside_band}};
+  }
+  if (common.json) {
+    std::cout << report.dump(2) << '\n';
+    return done;
+  }
+  std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", options.method.c_str(), grid.window.x_min, grid.window.x_max,
+                    grid.window.y_min, grid.window.y_max);
+  if (std::isfinite(c.y_max)) {
+    std::cout << text("  largest Y   %.12g at X = %.12g%s\n", c.y_max, c.x_at_y_max,
+                      c.y_max_attained ? "" : " (not attained: powers grow there)");
+  } else {
+    std::cout << "  largest Y   unbounded\n";
+  }
+  std::cout << text("  area        %.12g inside the window\n", area)
+            << text("  cells       %ld stable, %ld neutral of %zu\n", stable, neutral, radii.size());
+  if (report.contains("simulated")) {
+    const Json& s = report["simulated"];
+    std::cout << text("  simulated   %ld cells of %ld steps: %ld diverged, %ld differ from theory, %ld of them where "
+                      "|rho - 1| >= %.3g\n",
+                      s["cells"].get<long>(), s["steps"].get<long>(), s["diverged"].get<long>(),
+                      s["disagreements"].get<long>(), s["outside_band"].get<long>(), s["band"].get<double>());
+  }
+  return done;
+}
+
+}  // namespace springstab

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -16,29 +17,32 @@ namespace {
 constexpr Eigen::Index lanes = 8;
 using Lanes = Eigen::Array<double, lanes, 1>;
 
-// A, row by row, from any vector type.
+// A, row by row, from any vector type; nothing where a step is not finite: at a pole (1 + X + Y = 0 for implicit
+// Euler) of any of the oscillators.
 template <template <class> class Method, class V>
-std::array<V, 4> amplification(const Oscillator<V>& oscillator, const V& one, const V& zero) {
+std::optional<std::array<V, 4>> amplification(const Oscillator<V>& oscillator, const V& one, const V& zero) {
   Method<V> method;
   State<V> from_x{one, zero}, from_v{zero, one};
-  method.step(oscillator, 1.0, from_x);
-  method.step(oscillator, 1.0, from_v);
-  return {from_x.x, from_v.x, from_x.v, from_v.v};
+  if (method.step(oscillator, 1.0, from_x) != StepStatus::done) return std::nullopt;
+  if (method.step(oscillator, 1.0, from_v) != StepStatus::done) return std::nullopt;
+  return std::array<V, 4>{from_x.x, from_v.x, from_x.v, from_v.v};
 }
 
 template <template <class> class Method>
 SymbolicAmplification symbolic() {
   using F = RationalFunction;
-  return amplification<Method, F>({.k = BivariatePolynomial::y(), .d = BivariatePolynomial::x()}, 1.0, 0.0);
+  return *amplification<Method, F>({.k = BivariatePolynomial::y(), .d = BivariatePolynomial::x()}, 1.0, 0.0);
 }
 
 // λ = m ± √s with m = (a11 + a22)/2, s = ((a11 - a22)/2)² + a12 a21: no cancellation where s is small.
 template <template <class> class Method>
-Lanes radii(const Lanes& x, const Lanes& y) {
+std::optional<Lanes> radii(const Lanes& x, const Lanes& y) {
   const auto a = amplification<Method, Lanes>({.k = y, .d = x}, Lanes::Ones(), Lanes::Zero());
-  const Lanes m = 0.5 * (a[0] + a[3]);
-  const Lanes half = 0.5 * (a[0] - a[3]);
-  const Lanes s = half * half + a[1] * a[2];
+  if (!a) return std::nullopt;
+  const auto& [a11, a12, a21, a22] = *a;
+  const Lanes m = 0.5 * (a11 + a22);
+  const Lanes half = 0.5 * (a11 - a22);
+  const Lanes s = half * half + a12 * a21;
   return (s >= 0).select(m.abs() + s.abs().sqrt(), (m * m - s).abs().sqrt());
 }
 
@@ -59,7 +63,15 @@ void for_each_group(std::span<const double> x, std::span<const double> y, Body b
 template <template <class> class Method>
 void radii_of(std::span<const double> x, std::span<const double> y, std::span<double> rho) {
   for_each_group(x, y, [&](const Lanes& xs, const Lanes& ys, Eigen::Index first, Eigen::Index count) {
-    Eigen::Map<Eigen::ArrayXd>(rho.data() + first, count) = radii<Method>(xs, ys).head(count);
+    Eigen::Map<Eigen::ArrayXd> out(rho.data() + first, count);
+    if (const auto together = radii<Method>(xs, ys)) {
+      out = together->head(count);
+    } else {
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const auto alone = radii<Method>(Lanes::Constant(xs[i]), Lanes::Constant(ys[i]));
+        out[i] = alone ? (*alone)[0] : std::numeric_limits<double>::infinity();
+      }
+    }
   });
 }
 
@@ -81,7 +93,9 @@ std::optional<LaneFates> simulate_group(const Lanes& x, const Lanes& y, long ste
   const Lanes size = state.x.abs().max(state.v.abs());
   LaneFates fates;
   for (Eigen::Index i = 0; i < lanes; ++i)
-    fates[i] = diverged[i] ? CellFate::diverged : size[i] < 1 / threshold ? CellFate::decayed : CellFate::bounded;
+    fates[i] = diverged[i]               ? CellFate::diverged
+               : size[i] < 1 / threshold ? CellFate::decayed
+                                         : CellFate::bounded;
   return fates;
 }
 
@@ -91,9 +105,9 @@ void fates_of(std::span<const double> x, std::span<const double> y, long steps, 
   for_each_group(x, y, [&](const Lanes& xs, const Lanes& ys, Eigen::Index first, Eigen::Index count) {
     const std::optional<LaneFates> together = simulate_group<Method>(xs, ys, steps, threshold);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const auto alone = together ? std::nullopt
-                                  : simulate_group<Method>(Lanes::Constant(xs[i]), Lanes::Constant(ys[i]), steps,
-                                                           threshold);
+      const auto alone =
+          together ? std::nullopt
+                   : simulate_group<Method>(Lanes::Constant(xs[i]), Lanes::Constant(ys[i]), steps, threshold);
       fate[static_cast<std::size_t>(first + i)] = together ? (*together)[i]
                                                   : alone  ? (*alone)[i]
                                                            : CellFate::diverged;
@@ -104,7 +118,8 @@ void fates_of(std::span<const double> x, std::span<const double> y, long steps, 
 template <template <class> class Method>
 Eigen::Matrix2d matrix(double x, double y) {
   const auto a = amplification<Method, double>({.k = y, .d = x}, 1.0, 0.0);
-  return Eigen::Matrix2d{{a[0], a[1]}, {a[2], a[3]}};
+  if (!a) return Eigen::Matrix2d::Constant(std::numeric_limits<double>::infinity());
+  return Eigen::Matrix2d{{(*a)[0], (*a)[1]}, {(*a)[2], (*a)[3]}};
 }
 
 struct Functions {
@@ -119,7 +134,8 @@ const Functions& functions(std::string_view method) {
   static const std::vector<Functions> table = [] {
     std::vector<Functions> all;
     Methods::for_each([&]<template <class> class Method>() {
-      all.push_back({Method<double>::info.name, matrix<Method>, symbolic<Method>, radii_of<Method>, fates_of<Method>});
+      all.push_back(
+          {Method<double>::info.name, matrix<Method>, symbolic<Method>, radii_of<Method>, fates_of<Method>});
     });
     return all;
   }();

@@ -53,8 +53,9 @@ struct Iteration {
       : a(op), which(what), tolerance(options.tolerance) {
     if (op.size > 2'000'000'000) throw std::invalid_argument("the operator is too large for 32-bit ARPACK");
     if (count < 1 || count + margin > op.size)
-      throw std::invalid_argument("cannot find " + std::to_string(count) + " eigenvalues of an operator of size " +
-                                  std::to_string(op.size) + " iteratively, solve it densely");
+      throw std::invalid_argument("cannot find " + std::to_string(count) +
+                                  " eigenvalues of an operator of size " + std::to_string(op.size) +
+                                  " iteratively, solve it densely");
     n = static_cast<a_int>(op.size);
     nev = static_cast<a_int>(count);
     ncv = static_cast<a_int>(std::min(op.size, std::max(options.basis_size, 2 * count + 2)));
@@ -83,8 +84,8 @@ struct Iteration {
     workl.setZero(workl_size);
     a_int ido = 0;
     while (true) {
-      aupd(&ido, "I", n, which, nev, tolerance, start.data(), ncv, basis.data(), n, iparam.data(), ipntr.data(),
-           workd.data(), workl.data(), static_cast<a_int>(workl.size()), &info);
+      aupd(&ido, "I", n, which, nev, tolerance, start.data(), ncv, basis.data(), n, iparam.data(),
+           ipntr.data(), workd.data(), workl.data(), static_cast<a_int>(workl.size()), &info);
       if (ido == 99) break;
       if (ido == -1 || ido == 1) {
         product(&workd[ipntr[0] - 1], &workd[ipntr[1] - 1]);
@@ -107,7 +108,8 @@ struct Iteration {
 
 }  // namespace
 
-SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index count, const ArpackOptions& options) {
+SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index count,
+                                       const ArpackOptions& options) {
   const Solving guard;
   Iteration iteration(a, count, options, "LA", 1);
   SymmetricEigenpairs found;
@@ -128,15 +130,16 @@ SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index cou
     std::vector<a_int> select(ncv);
     a_int info = 0;
     dseupd_c(1, "A", select.data(), values.data(), vectors.data(), n, 0, "I", n, iteration.which, nev,
-             iteration.tolerance, iteration.start.data(), ncv, iteration.basis.data(), n, iteration.iparam.data(),
-             iteration.ipntr.data(), iteration.workd.data(), iteration.workl.data(),
+             iteration.tolerance, iteration.start.data(), ncv, iteration.basis.data(), n,
+             iteration.iparam.data(), iteration.ipntr.data(), iteration.workd.data(), iteration.workl.data(),
              static_cast<a_int>(iteration.workl.size()), &info);
     if (info != 0) throw std::runtime_error("ARPACK could not extract, info = " + std::to_string(info));
     Eigen::VectorXd image(n);
     found.vectors.resize(n, usable);
     for (a_int i = 0; i < usable; ++i) {  // ascending in ARPACK
       const a_int column = usable - 1 - i;
-      if (!std::isfinite(values[column])) throw std::runtime_error("ARPACK returned an eigenvalue that is not finite");
+      if (!std::isfinite(values[column]))
+        throw std::runtime_error("ARPACK returned an eigenvalue that is not finite");
       found.values.push_back(values[column]);
       found.vectors.col(i) = vectors.col(column);
       iteration.product(vectors.col(column).data(), image.data());
@@ -165,10 +168,11 @@ Eigenvalues dominant_eigenvalues(const LinearOperator& a, Eigen::Index count, co
     Eigen::MatrixXd unused = Eigen::MatrixXd::Zero(n, nev + 1);
     std::vector<a_int> select(ncv);
     a_int info = 0;
-    dneupd_c(0, "A", select.data(), real.data(), imaginary.data(), unused.data(), n, 0, 0, workev.data(), "I", n,
-             iteration.which, nev, iteration.tolerance, iteration.start.data(), ncv, iteration.basis.data(), n,
-             iteration.iparam.data(), iteration.ipntr.data(), iteration.workd.data(), iteration.workl.data(),
-             static_cast<a_int>(iteration.workl.size()), &info);
+    dneupd_c(0, "A", select.data(), real.data(), imaginary.data(), unused.data(), n, 0, 0, workev.data(), "I",
+             n, iteration.which, nev, iteration.tolerance, iteration.start.data(), ncv,
+             iteration.basis.data(), n, iteration.iparam.data(), iteration.ipntr.data(),
+             iteration.workd.data(), iteration.workl.data(), static_cast<a_int>(iteration.workl.size()),
+             &info);
     if (info != 0) throw std::runtime_error("ARPACK could not extract, info = " + std::to_string(info));
     for (a_int i = 0; i < std::min(iteration.converged(), nev + 1); ++i) {
       found.values.emplace_back(real[i], imaginary[i]);

@@ -48,6 +48,7 @@ SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index cou
 
 /// The `count` eigenvalues of largest modulus of a general operator. Needs count < size - 1. Throws likewise.
 /// Do not expect convergence for a stable transition matrix: its largest eigenvalues cluster near 1.
-Eigenvalues dominant_eigenvalues(const LinearOperator& a, Eigen::Index count, const ArpackOptions& options = {});
+Eigenvalues dominant_eigenvalues(const LinearOperator& a, Eigen::Index count,
+                                 const ArpackOptions& options = {});
 
 }  // namespace springstab

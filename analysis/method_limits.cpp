@@ -14,8 +14,7 @@ bool is_semidefinite(const SparseMatrix& a) {
   const double size = Eigen::VectorXd(a.diagonal()).cwiseAbs().maxCoeff();
   SparseMatrix shift(a.rows(), a.cols());
   shift.setIdentity();
-  return size > 0 &&
-         Eigen::SimplicialLLT<SparseMatrix>(a + 1e-12 * size * shift).info() == Eigen::Success;
+  return size > 0 && Eigen::SimplicialLLT<SparseMatrix>(a + 1e-12 * size * shift).info() == Eigen::Success;
 }
 
 // The least-squares fit of D by d0 M + alpha K, scaled so that M and K have unit size.
@@ -78,7 +77,8 @@ MethodLimits method_limits(std::string_view method, const StiffestMode& k0, cons
   const double h_max = critical_step(region, modes);
   limits.status = status_of(h_max);
   limits.h_max = positive(h_max);
-  if (limits.status == LimitStatus::limited) limits.recommended = positive(recommended_step(region, modes, safety));
+  if (limits.status == LimitStatus::limited)
+    limits.recommended = positive(recommended_step(region, modes, safety));
   if (std::isfinite(k_bound)) {
     modes.k_min = 0;
     modes.k_max = k_bound;

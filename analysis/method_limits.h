@@ -20,9 +20,9 @@ struct DampingModel {
     general    // anything else
   };
   Kind kind = Kind::none;
-  double d0 = 0;               // [1/s]
-  double alpha = 0;            // [s]
-  bool semidefinite = true;    // D is positive semidefinite
+  double d0 = 0;             // [1/s]
+  double alpha = 0;          // [s]
+  bool semidefinite = true;  // D is positive semidefinite
 };
 
 /// D of the matrices: none, Rayleigh if D = d0 M + alpha K fits to 1e-12 with d0, alpha >= 0, else general.
@@ -44,9 +44,9 @@ struct MethodLimits {
   std::optional<DampingDesign> designed;
 };
 
-/// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method that is
-/// stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0); the others are
-/// unknown. `safety` >= 1 acts on the stiffness.
+/// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method
+/// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);
+/// the others are unknown. `safety` >= 1 acts on the stiffness.
 MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
                            double safety);
 

@@ -26,8 +26,8 @@ struct Polynomial {
 Polynomial operator+(const Polynomial& p, const Polynomial& q);
 Polynomial operator*(const Polynomial& p, const Polynomial& q);
 
-/// Σ c_ab X^a Y^b. Beside each coefficient stands the sum of the magnitudes that went into it, so that what is
-/// only rounding noise of a cancellation can be told from a small coefficient and removed.
+/// Σ c_ab X^a Y^b. Beside each coefficient stands the sum of the magnitudes that went into it, so that what
+/// is only rounding noise of a cancellation can be told from a small coefficient and removed.
 class BivariatePolynomial {
  public:
   BivariatePolynomial(double constant = 0);
@@ -46,7 +46,8 @@ class BivariatePolynomial {
   friend BivariatePolynomial operator*(const BivariatePolynomial& p, const BivariatePolynomial& q);
   friend bool operator==(const BivariatePolynomial& p, const BivariatePolynomial& q);
   /// p / q where q divides p but for rounding noise, otherwise nothing.
-  friend std::optional<BivariatePolynomial> exact_quotient(BivariatePolynomial p, const BivariatePolynomial& q);
+  friend std::optional<BivariatePolynomial> exact_quotient(BivariatePolynomial p,
+                                                           const BivariatePolynomial& q);
 
  private:
   BivariatePolynomial(Eigen::ArrayXXd value, Eigen::ArrayXXd magnitude);

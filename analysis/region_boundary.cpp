@@ -42,8 +42,7 @@ std::vector<StabilityRegion::Piece> StabilityRegion::pieces_of(const Window& win
     throw std::invalid_argument("the window must have x_min < x_max and y_min < y_max");
   constexpr int cells = 400;
   std::vector<double> grid;
-  for (int i = 0; i <= cells; ++i)
-    grid.push_back(window.x_min + (window.x_max - window.x_min) * i / cells);
+  for (int i = 0; i <= cells; ++i) grid.push_back(window.x_min + (window.x_max - window.x_min) * i / cells);
   return smooth_pieces(grid, window.y_min, window.y_max);
 }
 
@@ -73,7 +72,7 @@ double StabilityRegion::area(const Window& window) const {
 std::vector<RegionPiece> StabilityRegion::pieces(const Window& window) const {
   std::vector<RegionPiece> result;
   for (const Piece& piece : pieces_of(window)) {
-    const std::size_t count = piece.middle.intervals.size();
+    const std::size_t count = piece.inner.intervals.size();
     std::vector<RegionPiece> parts(count);
     for (const Column& c : sample(piece, window)) {
       for (std::size_t i = 0; i < count; ++i) {
@@ -95,7 +94,7 @@ std::vector<StabilityRegion::Column> StabilityRegion::sample(const Piece& piece,
     const double x = std::clamp(cosine_point(piece.left, piece.right, std::numbers::pi * i / samples),
                                 piece.left + inset, piece.right - inset);
     Column c = column(x, window.y_min, window.y_max);
-    if (c.same_structure(piece.middle)) columns.push_back(std::move(c));
+    if (c.intervals.size() == piece.inner.intervals.size()) columns.push_back(std::move(c));
   }
   return columns;
 }
@@ -105,8 +104,8 @@ std::vector<BoundaryArc> StabilityRegion::boundary(const Window& window) const {
   const std::vector<Piece> all = pieces_of(window);
   for (const Piece& piece : all) {
     const std::vector<Column> columns = sample(piece, window);
-    for (std::size_t i = 0; i < piece.middle.intervals.size(); ++i) {
-      const StableInterval& interval = piece.middle.intervals[i];
+    for (std::size_t i = 0; i < piece.inner.intervals.size(); ++i) {
+      const StableInterval& interval = piece.inner.intervals[i];
       for (const bool upper : {false, true}) {
         BoundaryArc arc{upper ? interval.upper_bound : interval.lower_bound, {}, {}};
         if (arc.bound == Bound::window) continue;
@@ -131,13 +130,15 @@ void StabilityRegion::append_vertical_arcs(const std::vector<Piece>& all, const 
     if (x == window.x_min || x == window.x_max) continue;
     Intervals left, right;
     for (const Piece& piece : all) {
-      if (piece.right == x) left = sample(piece, window).back().intervals;
-      if (piece.left == x) right = sample(piece, window).front().intervals;
+      const std::vector<Column> columns = sample(piece, window);
+      if (piece.right == x && !columns.empty()) left = columns.back().intervals;
+      if (piece.left == x && !columns.empty()) right = columns.front().intervals;
     }
     for (const auto& parts : {difference(left, right), difference(right, left)})
       for (const auto& [lower, upper] : parts) {
         if (upper - lower < 1e-4) continue;  // the inset of a square-root end
-        const auto violation = [&](std::size_t i) { return std::abs(jury_[i](x, between(lower, upper))); };
+        const double y = between(lower, upper);
+        const auto violation = [&](std::size_t i) { return std::abs(jury_[i](x, y)); };
         std::size_t binding = 0;
         for (std::size_t i = 1; i < jury_.size(); ++i)
           if (violation(i) < violation(binding)) binding = i;

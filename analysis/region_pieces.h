@@ -24,7 +24,7 @@ struct StabilityRegion::Column {
 /// X in (left, right) over which the intervals keep their number and the conditions that end them.
 struct StabilityRegion::Piece {
   double left, right;
-  Column middle;  // a representative
+  Column inner;  // a representative
 };
 
 /// A point strictly between a and b, either of which may be infinite.

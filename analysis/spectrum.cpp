@@ -34,7 +34,8 @@ double largest_row_sum(const SparseMatrix& a) {
 LinearOperator scaled_stiffness(const StructuralMatrices& s) {
   if (is_diagonal(s.mass)) {
     const auto matrix = std::make_shared<SparseMatrix>(scaled(s.stiffness, inverse_root_mass(s)));
-    return {s.size(), [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; }};
+    return {s.size(),
+            [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; }};
   }
   const auto mass = std::make_shared<Cholesky>(s.mass);
   return {s.size(), [mass, &s](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
@@ -73,8 +74,8 @@ StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& optio
   return mode;
 }
 
-// A bound on how far the factorization's rounding may have moved the eigenvalues: Σ γ(l_i + 2) a_ii, where l_i
-// counts row i of the factor (Rump 2006, Verification of positive definiteness, BIT 46).
+// A bound on how far the factorization's rounding may have moved the eigenvalues: Σ γ(l_i + 2) a_ii, where
+// l_i counts row i of the factor (Rump 2006, Verification of positive definiteness, BIT 46).
 double factorization_error(const Cholesky& factor, double largest_diagonal) {
   const SparseMatrix& l = factor.matrixL().nestedExpression();
   return 1.01 * unit_roundoff * static_cast<double>(l.nonZeros() + 2 * l.rows()) * largest_diagonal;

@@ -18,17 +18,17 @@ enum class BoundKind {
 
 struct StiffestMode {
   bool converged = false;
-  double value = 0;                // Ritz value, never above k0 but for rounding [1/s²]
-  double residual = 0;             // ‖S u - value u‖ for the unit vector u: some eigenvalue is this close
-  double upper_bound = 0;          // k0 is smaller, proved
+  double value = 0;        // Ritz value, never above k0 but for rounding [1/s²]
+  double residual = 0;     // ‖S u - value u‖ for the unit vector u: some eigenvalue is this close
+  double upper_bound = 0;  // k0 is smaller, proved
   BoundKind bound_kind = BoundKind::gershgorin;
   long products = 0;               // with S; 0 when solved densely
   std::optional<double> smallest;  // k_min where the whole spectrum was computed [1/s²]
   bool indefinite = false;         // some eigenvalue is below -1e-9 k0: the structure itself is unstable
 };
 
-/// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Above 150 000 unknowns nothing is factorized: the bound is
-/// Gershgorin's and definiteness is not tested.
+/// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Above 150 000 unknowns nothing is factorized: the
+/// bound is Gershgorin's and definiteness is not tested.
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
 
 /// Whether a Cholesky factorization proves that every eigenvalue of K' is below sigma.

@@ -19,8 +19,9 @@ namespace springstab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 1e-14;   // relative to the terms that cancel: a sign below it is not known
-constexpr double neutrality = 1e-12; // a condition violated by less, relative to its terms, counts as neutral
+constexpr double rounding = 1e-14;  // relative to the terms that cancel: a sign below it is not known
+constexpr double neutrality =
+    1e-12;  // a condition violated by less, relative to its terms, counts as neutral
 
 constexpr std::array<Bound, 3> conditions{Bound::complex_pair, Bound::plus_one, Bound::minus_one};
 
@@ -140,9 +141,9 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
   bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double t = between(cuts[i].t, cuts[i + 1].t);
-    const bool stable = cuts[i].t < cuts[i + 1].t &&
-                        std::all_of(jury.begin(), jury.end(),
-                                    [&](const Condition& c) { return c.sign(t, rounding) > 0; });
+    const bool stable =
+        cuts[i].t < cuts[i + 1].t &&
+        std::all_of(jury.begin(), jury.end(), [&](const Condition& c) { return c.sign(t, rounding) > 0; });
     if (stable && touching) {
       found.back().upper = cuts[i + 1].t;
       found.back().upper_bound = cuts[i + 1].bound;
@@ -185,8 +186,9 @@ StabilityRegion::Column StabilityRegion::column(double x, double y_min, double y
 void StabilityRegion::find_breaks(Column left, const Column& right, double y_min, double y_max,
                                   std::vector<double>& breaks) const {
   for (int i = 0; !left.same_structure(right); ++i) {
-    if (i == 16) throw std::runtime_error("the stability boundary near X = " + std::to_string(left.x) +
-                                          " could not be resolved");
+    if (i == 16)
+      throw std::runtime_error("the stability boundary near X = " + std::to_string(left.x) +
+                               " could not be resolved");
     Column before = left, after = right;
     while (after.x - before.x > 1e-16) {
       const double x = between(before.x, after.x);
@@ -199,8 +201,8 @@ void StabilityRegion::find_breaks(Column left, const Column& right, double y_min
   }
 }
 
-std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::vector<double>& grid, double y_min,
-                                                                   double y_max) const {
+std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::vector<double>& grid,
+                                                                   double y_min, double y_max) const {
   std::vector<double> breaks{grid.front()};
   Column left = column(grid.front(), y_min, y_max);
   for (std::size_t i = 1; i < grid.size(); ++i) {
@@ -213,8 +215,10 @@ std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::ve
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
     if (breaks[i + 1] - breaks[i] <= 1e-12 * std::max(1.0, std::abs(breaks[i]))) continue;
-    Column middle = column(between(breaks[i], breaks[i + 1]), y_min, y_max);
-    if (!middle.intervals.empty()) pieces.push_back({breaks[i], breaks[i + 1], std::move(middle)});
+    // A golden section, since two conditions may bind at once at round values of X.
+    const double x = breaks[i] + (breaks[i + 1] - breaks[i]) / (1 + std::numbers::phi);
+    Column inner = column(x, y_min, y_max);
+    if (!inner.intervals.empty()) pieces.push_back({breaks[i], breaks[i + 1], std::move(inner)});
   }
   return pieces;
 }
@@ -233,7 +237,7 @@ RegionConstants StabilityRegion::find_constants() const {
   found.real_interval = critical_step(0, 1);
   found.imaginary_interval = critical_step(1, 0);
   for (const Piece& piece : all_pieces_) {
-    const StableInterval& top = piece.middle.intervals.back();
+    const StableInterval& top = piece.inner.intervals.back();
     if (top.upper == infinity) {
       found.y_max = infinity;
       found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
@@ -244,7 +248,7 @@ RegionConstants StabilityRegion::find_constants() const {
   }
   if (std::isfinite(found.y_max)) found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
   found.covers_quadrant = std::any_of(all_pieces_.begin(), all_pieces_.end(), [](const Piece& piece) {
-    const StableInterval& top = piece.middle.intervals.back();
+    const StableInterval& top = piece.inner.intervals.back();
     return piece.left <= 0 && piece.right >= whole_line().back() && top.lower <= 0 && top.upper == infinity;
   });
   return found;
@@ -267,7 +271,7 @@ std::pair<double, double> StabilityRegion::highest_point(const Piece& piece) con
   const auto best = static_cast<std::size_t>(std::max_element(ys.begin(), ys.end()) - ys.begin());
   if (best == 0 || best == samples) return {best == 0 ? piece.left : piece.right, ys[best]};
 
-  const auto bound = static_cast<std::size_t>(piece.middle.intervals.back().upper_bound);
+  const auto bound = static_cast<std::size_t>(piece.inner.intervals.back().upper_bound);
   const BivariatePolynomial slope = jury_[bound].numerator().derivative_x();
   const auto steepness = [&](double x) { return slope(x, top(x)); };
   if (steepness(xs[best - 1]) * steepness(xs[best + 1]) > 0) return {xs[best], ys[best]};
@@ -304,12 +308,14 @@ DampingLine StabilityRegion::damping_line(double x0) const {
   DampingLine best{0, reach(0)};
   double best_angle = 0;
   for (int i = 1; i < samples; ++i)
-    if (const double y = reach(i * width); y > best.reach) best = {std::tan(i * width), y}, best_angle = i * width;
+    if (const double y = reach(i * width); y > best.reach)
+      best = {std::tan(i * width), y}, best_angle = i * width;
   if (best_angle == 0 || best.reach == infinity) return best;
 
   double lower = best_angle - width, upper = best_angle + width;  // golden section: the reach may jump
   for (int i = 0; i < 80; ++i) {
-    const double a = upper - (upper - lower) / std::numbers::phi, b = lower + (upper - lower) / std::numbers::phi;
+    const double a = upper - (upper - lower) / std::numbers::phi,
+                 b = lower + (upper - lower) / std::numbers::phi;
     const double at_a = reach(a), at_b = reach(b);
     (at_a < at_b ? lower : upper) = at_a < at_b ? a : b;
     if (std::max(at_a, at_b) > best.reach) best = {std::tan(at_a > at_b ? a : b), std::max(at_a, at_b)};

@@ -53,12 +53,12 @@ struct RegionPiece {
 
 /// The largest Y of the region, where it is, and how far it reaches along the axes.
 struct RegionConstants {
-  double y_max;              // supremum of Y; ∞ where unbounded
-  double x_at_y_max;         // NaN where unbounded
-  bool y_max_attained;       // powers of A stay bounded at the apex itself
-  double real_interval;      // sup X on Y = 0
-  double imaginary_interval; // √ sup Y on X = 0, neutral counted; 0 where none
-  bool covers_quadrant;      // every X > 0, Y > 0 is stable: no positive semidefinite D, K limits h
+  double y_max;               // supremum of Y; ∞ where unbounded
+  double x_at_y_max;          // NaN where unbounded
+  bool y_max_attained;        // powers of A stay bounded at the apex itself
+  double real_interval;       // sup X on Y = 0
+  double imaginary_interval;  // √ sup Y on X = 0, neutral counted; 0 where none
+  bool covers_quadrant;       // every X > 0, Y > 0 is stable: no positive semidefinite D, K limits h
 };
 
 /// The best line for Rayleigh damping from (x0, 0): X = x0 + slope·Y is stable or neutral for 0 < Y < reach.

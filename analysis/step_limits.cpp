@@ -79,7 +79,8 @@ DampingDesign design_damping(const StabilityRegion& region, double k_max, double
   double upper = std::min(base_limit, apex_limit);
   if (upper == infinity) return {infinity, 0};
 
-  // Largest h whose best line from (h d0, 0) reaches h² k_max; the reach may jump, so all of (0, upper] is scanned.
+  // Largest h whose best line from (h d0, 0) reaches h² k_max; the reach may jump, so all of (0, upper] is
+  // scanned.
   const auto feasible = [&](double h) {
     return region.damping_line(h * d0).reach >= h * h * k_max * (1 - 1e-14);
   };

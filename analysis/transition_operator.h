@@ -10,8 +10,8 @@
 
 namespace springstab {
 
-/// Size 2n: (x, v) -> the state one step h later. `system` must outlive it. A product throws std::runtime_error
-/// when the step fails; an iterative linear solve inside should be set to 1e-13.
+/// Size 2n: (x, v) -> the state one step h later. `system` must outlive it. A product throws
+/// std::runtime_error when the step fails; an iterative linear solve inside should be set to 1e-13.
 LinearOperator transition_operator(LinearSystem& system, std::string_view method, double h);
 
 }  // namespace springstab

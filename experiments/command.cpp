@@ -19,11 +19,14 @@ std::string method_names() {
 
 void add_input(CLI::App& command, InputOptions& input) {
   command.add_option("INPUT", input.file, "SCENE.json or MESH.obj")->type_name("FILE");
-  command.add_option("--grid", input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
+  command
+      .add_option("--grid", input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
       ->type_name("NxM");
-  command.add_option("--spacing", input.spacing, "distance s of the grid's particles (default 0.025)")->type_name("[m]");
+  command.add_option("--spacing", input.spacing, "distance s of the grid's particles (default 0.025)")
+      ->type_name("[m]");
   command.add_option("--material", input.material, "default, soft or stiff")->type_name("NAME");
-  command.add_option("--pin", input.pin, "none, first-row, corners or particle numbers like 0,5-9")->type_name("SPEC");
+  command.add_option("--pin", input.pin, "none, first-row, corners or particle numbers like 0,5-9")
+      ->type_name("SPEC");
   command.add_option("--stiffness", input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
       ->type_name("FILE");
   command.add_option("--mass", input.mass, "M (default: the unit matrix)")->type_name("FILE");
@@ -32,43 +35,54 @@ void add_input(CLI::App& command, InputOptions& input) {
 
 void add_methods(CLI::App& app, const CommonOptions& common, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("methods", "The methods and their constants");
-  command->footer("Y_max: largest stable Y = h^2 k over all damping, and the X = h d where it is; real axis: largest\n"
-                  "stable X at Y = 0; imaginary axis: largest stable h*sqrt(k) without damping.\n\n"
-                  "example: springstab methods --json");
+  command->footer(
+      "Y_max: largest stable Y = h^2 k over all damping, and the X = h d where it is; real axis: largest\n"
+      "stable X at Y = 0; imaginary axis: largest stable h*sqrt(k) without damping.\n\n"
+      "example: springstab methods --json");
   command->callback([&] { chosen = [&] { return run_methods(common); }; });
 }
 
 void add_region(CLI::App& app, const CommonOptions& common, RegionOptions& o, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand("region", "The stable region of a method in the X-Y plane (X = hd, Y = h^2 k)");
+  CLI::App* command =
+      app.add_subcommand("region", "The stable region of a method in the X-Y plane (X = hd, Y = h^2 k)");
   command->add_option("METHOD", o.method, "one of " + method_names())->required()->type_name("");
   command->add_option("--x", o.x, "range of X (default: the region's own extent)")->type_name("A:B");
   command->add_option("--y", o.y, "range of Y")->type_name("A:B");
   command->add_option("--nx", o.nx, "cells along X")->capture_default_str();
   command->add_option("--ny", o.ny, "cells along Y")->capture_default_str();
   command->add_option("--raster", o.raster, "write x,y,spectral_radius at cell centres")->type_name("F.csv");
-  command->add_option("--boundary", o.boundary, "write the exact boundary: condition,x,y, a blank line ends an arc")
+  command
+      ->add_option("--boundary", o.boundary,
+                   "write the exact boundary: condition,x,y, a blank line ends an arc")
       ->type_name("F.csv");
-  command->add_option("--pieces", o.pieces, "write the region to fill: x,y_lower,y_upper")->type_name("F.csv");
-  command->add_option("--simulate", o.simulated_cells, "simulate N x N cells and compare with theory")->type_name("N");
-  command->add_option("--cells", o.cells, "write the simulated cells: x,y,spectral_radius,diverged")->type_name("F.csv");
+  command->add_option("--pieces", o.pieces, "write the region to fill: x,y_lower,y_upper")
+      ->type_name("F.csv");
+  command->add_option("--simulate", o.simulated_cells, "simulate N x N cells and compare with theory")
+      ->type_name("N");
+  command->add_option("--cells", o.cells, "write the simulated cells: x,y,spectral_radius,diverged")
+      ->type_name("F.csv");
   command->add_option("--steps", o.cell_steps, "steps of each simulated cell")->capture_default_str();
-  command->footer("All quantities are dimensionless. Cells count as neutral where |rho - 1| <= 1e-9.\n\n"
-                  "example: springstab region rk4 --x -0.6:6 --y 0:9 --boundary rk4.csv");
+  command->footer(
+      "All quantities are dimensionless. Cells count as neutral where |rho - 1| <= 1e-9.\n\n"
+      "example: springstab region rk4 --x -0.6:6 --y 0:9 --boundary rk4.csv");
   command->callback([&] { chosen = [&] { return run_region(common, o); }; });
 }
 
 void add_limits(CLI::App& app, const CommonOptions& common, LimitsOptions& o, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("limits", "Stable steps and damping of a scene, a mesh or matrices");
   add_input(*command, o.input);
-  command->add_option("--method", o.method, "one of " + method_names() + " (default: all)")->type_name("NAME");
+  command->add_option("--method", o.method, "one of " + method_names() + " (default: all)")
+      ->type_name("NAME");
   command->add_option("--safety", o.safety, "factor F >= 1 on the stiffness for the recommended step")
       ->capture_default_str();
   command->add_option("--max-step", o.max_step, "recommended where nothing limits the step, in seconds")
       ->capture_default_str();
   command->add_flag("--certify", o.certify, "exit 3 unless every method asked for has a certified step");
   command->footer(
-      "h_max [s]: every smaller step keeps every mode bounded, with the input's own damping. certified [s]: proved.\n"
-      "use [s]: with the safety factor. With fitted damping: the largest step over all alpha, and that alpha [s].\n"
+      "h_max [s]: every smaller step keeps every mode bounded, with the input's own damping. certified [s]: "
+      "proved.\n"
+      "use [s]: with the safety factor. With fitted damping: the largest step over all alpha, and that alpha "
+      "[s].\n"
       "Exit status 3: the --method asked for has no stable step.\n\n"
       "examples: springstab limits --grid 32x32 --pin first-row\n"
       "          springstab limits skirt.obj --method symplectic-euler --json\n"
@@ -83,25 +97,32 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
   command->add_option("--method", o.method, "one of " + method_names())->required()->type_name("NAME");
   command->add_option("--duration", o.duration, "time to simulate")->required()->type_name("[s]");
   command->add_option("--step", o.step, "step (default: the recommended one of `limits`)")->type_name("[s]");
-  command->add_option("--max-step", o.max_step, "largest step to choose (default 0.01 where nothing limits it)")
+  command
+      ->add_option("--max-step", o.max_step, "largest step to choose (default 0.01 where nothing limits it)")
       ->type_name("[s]");
   command->add_option("--safety", o.safety, "factor F >= 1 on the stiffness for the recommended step")
       ->capture_default_str();
   command->add_option("--damping", damping, "own, or designed: alpha fitted to the step")
       ->check(CLI::IsMember({"own", "designed"}))
       ->capture_default_str();
-  command->add_option("--output", o.output, "folder for the frames (matrices: trajectory.csv)")->type_name("DIR");
+  command->add_option("--output", o.output, "folder for the frames (matrices: trajectory.csv)")
+      ->type_name("DIR");
   command->add_option("--format", o.format, "of the frames: obj or vtk")
       ->check(CLI::IsMember({"obj", "vtk"}))
       ->capture_default_str();
-  command->add_option("--frames", o.frames, "number of frames after the first, evenly spaced")->capture_default_str();
-  command->add_option("--cg-tolerance", o.cg_tolerance, "relative residual of implicit Euler's conjugate gradients")
+  command->add_option("--frames", o.frames, "number of frames after the first, evenly spaced")
+      ->capture_default_str();
+  command
+      ->add_option("--cg-tolerance", o.cg_tolerance,
+                   "relative residual of implicit Euler's conjugate gradients")
       ->capture_default_str();
   command->footer(
-      "The step is shortened so that a whole number of steps ends at the duration. Units are SI. Matrices start from a\n"
+      "The step is shortened so that a whole number of steps ends at the duration. Units are SI. Matrices "
+      "start from a\n"
       "random displacement of unit M-norm (--seed) at rest, without force.\n"
       "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
-      "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 --output drape");
+      "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
+      "--output drape");
   command->callback([&] {
     chosen = [&] {
       o.designed_damping = damping == "designed";
@@ -110,11 +131,15 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
   });
 }
 
-void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o, std::function<int()>& chosen) {
+void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o,
+                 std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
-  command->add_option("NAMES", o.names, "1, 2, 3 (the paper's) or a method's name (default: all)")->type_name("");
+  command->add_option("NAMES", o.names, "1, 2, 3 (the paper's) or a method's name (default: all)")
+      ->type_name("");
   command->add_flag("--quick", o.quick, "fewer simulated cells and steps");
-  command->add_option("--plots", o.plots, "folder of the gnuplot scripts")->type_name("DIR")->capture_default_str();
+  command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
+      ->type_name("DIR")
+      ->capture_default_str();
   command->add_option("--output", o.output, "folder for the figures and their data")
       ->type_name("DIR")
       ->capture_default_str();
@@ -143,8 +168,9 @@ int run_command(int argc, const char* const* argv) {
       ->capture_default_str();
   app.require_subcommand(1);
   app.fallthrough();
-  app.footer("Each subcommand has its own --help. Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
-             "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
+  app.footer(
+      "Each subcommand has its own --help. Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
+      "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
   add_methods(app, common, chosen);
   add_region(app, common, region, chosen);
   add_limits(app, common, limits, chosen);

@@ -20,7 +20,14 @@ struct CommonOptions {
   int threads = 1;
 };
 
-enum ExitStatus { done = 0, internal_error = 1, bad_input = 2, no_answer = 3, run_diverged = 4, interrupted = 130 };
+enum ExitStatus {
+  done = 0,
+  internal_error = 1,
+  bad_input = 2,
+  no_answer = 3,
+  run_diverged = 4,
+  interrupted = 130
+};
 
 /// `springstab methods`: the methods with their constants.
 int run_methods(const CommonOptions& common);
@@ -50,12 +57,12 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options);
 struct SimulateOptions {
   InputOptions input;
   std::string method;
-  double duration = 0;           // [s]
-  std::optional<double> step;    // [s]
+  double duration = 0;             // [s]
+  std::optional<double> step;      // [s]
   std::optional<double> max_step;  // [s]
   double safety = 1.5;
   bool designed_damping = false;
-  std::string output;            // folder, empty for none
+  std::string output;  // folder, empty for none
   std::string format = "obj";
   int frames = 100;
   double cg_tolerance = 1e-6;
@@ -66,7 +73,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options);
 struct FiguresOptions {
   std::vector<std::string> names;  // empty for all
   bool quick = false;
-  std::string plots, output;       // folders
+  std::string plots, output;  // folders
 };
 int run_figures(const CommonOptions& common, const FiguresOptions& options);
 

@@ -17,7 +17,8 @@ void write_obj(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
 
 void write_vtk(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
                const std::vector<std::vector<int>>& faces) {
-  out << "# vtk DataFile Version 3.0\nspringstab\nASCII\nDATASET POLYDATA\nPOINTS " << positions.size() << " double\n";
+  out << "# vtk DataFile Version 3.0\nspringstab\nASCII\nDATASET POLYDATA\nPOINTS " << positions.size()
+      << " double\n";
   for (const Eigen::Vector3d& p : positions) out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
   std::size_t numbers = 0;
   for (const std::vector<int>& face : faces) numbers += face.size() + 1;

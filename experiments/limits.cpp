@@ -1,4 +1,5 @@
-// `springstab limits`: the largest stable step of each method for a structure, and the damping that goes with it.
+// `springstab limits`: the largest stable step of each method for a structure, and the damping that goes with
+// it.
 #include <cmath>
 #include <iostream>
 
@@ -47,8 +48,11 @@ Json damping_json(const DampingModel& damping) {
 
 Json k0_json(const StiffestMode& k0) {
   if (!k0.converged)
-    return {{"value", nullptr}, {"status", "not converged"}, {"upper_bound", number(k0.upper_bound)},
-            {"residual", nullptr}, {"products", k0.products}};
+    return {{"value", nullptr},
+            {"status", "not converged"},
+            {"upper_bound", number(k0.upper_bound)},
+            {"residual", nullptr},
+            {"products", k0.products}};
   return {{"value", number(k0.value)},
           {"status", "converged"},
           {"upper_bound", number(k0.upper_bound)},
@@ -66,9 +70,10 @@ Json limits_json(std::string_view method, const MethodLimits& limits, double d0)
             {"recommended_step", number(limits.recommended)},
             {"designed", nullptr}};
   if (limits.designed)
-    json["designed"] = {{"h_max", number(limits.designed->h_max > 0 ? std::optional(limits.designed->h_max) : std::nullopt)},
-                        {"alpha", number(limits.designed->alpha)},
-                        {"d0", number(d0)}};
+    json["designed"] = {
+        {"h_max", number(limits.designed->h_max > 0 ? std::optional(limits.designed->h_max) : std::nullopt)},
+        {"alpha", number(limits.designed->alpha)},
+        {"d0", number(d0)}};
   return json;
 }
 
@@ -76,10 +81,12 @@ std::string cell(const std::optional<double>& h) { return h ? text("%.6g", *h) :
 
 void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping, double safety) {
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
-  if (s.condensed > 0) std::cout << text(" (after eliminating %ld without mass)", static_cast<long>(s.condensed));
+  if (s.condensed > 0)
+    std::cout << text(" (after eliminating %ld without mass)", static_cast<long>(s.condensed));
   std::cout << text("\nk0 = %.10g 1/s² (proved below %.10g), 2/√k0 = %.6g s\n", k0.value, k0.upper_bound,
                     2 / std::sqrt(k0.value));
-  if (k0.indefinite) std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";
+  if (k0.indefinite)
+    std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";
   std::cout << "damping: " << name(damping.kind);
   if (damping.kind == DampingModel::Kind::rayleigh)
     std::cout << text(", d0 = %g 1/s, alpha = %g s", damping.d0, damping.alpha);
@@ -105,9 +112,10 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   const StructuralMatrices structure = subject.structure();
   const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
   if (subject.matrices() && k0.indefinite)
-    throw InputError(options.input.stiffness, 0,
-                     "the stiffness matrix is indefinite: the structure is unstable by itself, expected a positive "
-                     "semidefinite one");
+    throw InputError(
+        options.input.stiffness, 0,
+        "the stiffness matrix is indefinite: the structure is unstable by itself, expected a positive "
+        "semidefinite one");
   const DampingModel damping = subject.damping();
 
   Json list = Json::array();
@@ -134,7 +142,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                      .dump(2)
               << '\n';
   } else if (!k0.converged) {
-    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products, k0.upper_bound);
+    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products,
+                      k0.upper_bound);
   }
   return status;
 }

@@ -26,8 +26,8 @@ long force_evaluations(std::string_view method) {
 int run_methods(const CommonOptions& common) {
   Json list = Json::array();
   if (!common.json)
-    std::cout << text("%-18s %5s %6s %9s %14s %14s %9s %12s %12s\n", "method", "order", "forces", "implicit", "Y_max",
-                      "at X", "attained", "real axis", "imag. axis");
+    std::cout << text("%-18s %5s %6s %9s %14s %14s %9s %12s %12s\n", "method", "order", "forces", "implicit",
+                      "Y_max", "at X", "attained", "real axis", "imag. axis");
   for (const MethodInfo& info : all_methods()) {
     const RegionConstants& c = stability_region(info.name).constants();
     const bool bounded = std::isfinite(c.y_max);
@@ -42,15 +42,17 @@ int run_methods(const CommonOptions& common) {
                     {"real_interval", number(c.real_interval)},
                     {"imaginary_interval", number(c.imaginary_interval)}});
     if (!common.json)
-      std::cout << text("%-18s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n", std::string(info.name).c_str(),
-                        info.order, force_evaluations(info.name), info.implicit ? "yes" : "no", c.y_max,
+      std::cout << text("%-18s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n",
+                        std::string(info.name).c_str(), info.order, force_evaluations(info.name),
+                        info.implicit ? "yes" : "no", c.y_max,
                         bounded ? text("%.11g", c.x_at_y_max).c_str() : "-", c.y_max_attained ? "yes" : "no",
                         c.real_interval, c.imaginary_interval);
   }
   if (common.json) {
     std::cout << Json{{"methods", list}}.dump(2) << '\n';
   } else {
-    std::cout << "\nY = h²k and X = hd of one mode. Explicit Euler with damping α = h takes the same steps as symplectic\n"
+    std::cout << "\nY = h²k and X = hd of one mode. Explicit Euler with damping α = h takes the same steps "
+                 "as symplectic\n"
                  "Euler without it: the damping that stabilizes it damps nothing.\n";
   }
   return done;

@@ -8,8 +8,8 @@
 
 namespace springstab {
 
-/// Calls body(first, last) on disjoint ranges that cover [0, count), each a multiple of `grain` long but for the last.
-/// Rethrows one of the exceptions if any were thrown.
+/// Calls body(first, last) on disjoint ranges that cover [0, count), each a multiple of `grain` long but for
+/// the last. Rethrows one of the exceptions if any were thrown.
 template <class Body>
 void parallel_ranges(long count, long grain, int threads, Body body) {
   const long parts = std::clamp<long>(threads, 1, std::max<long>(1, count / grain));

@@ -74,8 +74,8 @@ void write_raster(const std::string& path, const CellGrid& grid, const std::vect
   file.stream() << "x,y,spectral_radius\n";
   for (int j = 0; j < grid.ny; ++j)
     for (int i = 0; i < grid.nx; ++i)
-      file.stream() << grid.x(i) << ',' << grid.y(j) << ',' << radii[static_cast<std::size_t>(j) * grid.nx + i]
-                    << '\n';
+      file.stream() << grid.x(i) << ',' << grid.y(j) << ','
+                    << radii[static_cast<std::size_t>(j) * grid.nx + i] << '\n';
   file.commit();
 }
 
@@ -138,8 +138,8 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
   parse_range(options.y, "--y", grid.window.y_min, grid.window.y_max);
   if (options.nx < 1 || options.ny < 1 || static_cast<long>(options.nx) * options.ny > largest_grid)
     throw InputError("--nx, --ny", 0,
-                     text("a grid of %d x %d cells is not possible, expected 1 to %ld cells", options.nx, options.ny,
-                          largest_grid));
+                     text("a grid of %d x %d cells is not possible, expected 1 to %ld cells", options.nx,
+                          options.ny, largest_grid));
 
   const std::vector<double> radii = spectral_radii(options.method, grid, common.threads);
   long stable = 0, neutral = 0;
@@ -153,15 +153,17 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
 
   const RegionConstants& c = region.constants();
   const double area = region.area(grid.window);
-  Json report{{"method", options.method},
-              {"window", {{"x", {grid.window.x_min, grid.window.x_max}}, {"y", {grid.window.y_min, grid.window.y_max}}}},
-              {"y_max", number(c.y_max)},
-              {"x_at_y_max", std::isfinite(c.y_max) ? number(c.x_at_y_max) : Json()},
-              {"y_max_attained", c.y_max_attained},
-              {"cells", radii.size()},
-              {"stable_cells", stable},
-              {"neutral_cells", neutral},
-              {"area", number(area)}};
+  Json report{
+      {"method", options.method},
+      {"window",
+       {{"x", {grid.window.x_min, grid.window.x_max}}, {"y", {grid.window.y_min, grid.window.y_max}}}},
+      {"y_max", number(c.y_max)},
+      {"x_at_y_max", std::isfinite(c.y_max) ? number(c.x_at_y_max) : Json()},
+      {"y_max_attained", c.y_max_attained},
+      {"cells", radii.size()},
+      {"stable_cells", stable},
+      {"neutral_cells", neutral},
+      {"area", number(area)}};
   if (options.simulated_cells > 0) {
     const CellGrid coarse{grid.window, options.simulated_cells, options.simulated_cells};
     const CellComparison cells =
@@ -178,8 +180,8 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
     std::cout << report.dump(2) << '\n';
     return done;
   }
-  std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", options.method.c_str(), grid.window.x_min, grid.window.x_max,
-                    grid.window.y_min, grid.window.y_max);
+  std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", options.method.c_str(), grid.window.x_min,
+                    grid.window.x_max, grid.window.y_min, grid.window.y_max);
   if (std::isfinite(c.y_max)) {
     std::cout << text("  largest Y   %.12g at X = %.12g%s\n", c.y_max, c.x_at_y_max,
                       c.y_max_attained ? "" : " (not attained: powers grow there)");
@@ -190,10 +192,11 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
             << text("  cells       %ld stable, %ld neutral of %zu\n", stable, neutral, radii.size());
   if (report.contains("simulated")) {
     const Json& s = report["simulated"];
-    std::cout << text("  simulated   %ld cells of %ld steps: %ld diverged, %ld differ from theory, %ld of them where "
-                      "|rho - 1| >= %.3g\n",
-                      s["cells"].get<long>(), s["steps"].get<long>(), s["diverged"].get<long>(),
-                      s["disagreements"].get<long>(), s["outside_band"].get<long>(), s["band"].get<double>());
+    std::cout << text(
+        "  simulated   %ld cells of %ld steps: %ld diverged, %ld differ from theory, %ld of them where "
+        "|rho - 1| >= %.3g\n",
+        s["cells"].get<long>(), s["steps"].get<long>(), s["diverged"].get<long>(),
+        s["disagreements"].get<long>(), s["outside_band"].get<long>(), s["band"].get<double>());
   }
   return done;
 }

@@ -29,9 +29,10 @@ void write_boundary(const std::string& path, const StabilityRegion& region, cons
 /// Columns x, y_lower, y_upper; a blank line ends each piece.
 void write_pieces(const std::string& path, const StabilityRegion& region, const Window& window);
 
-/// Theory against simulation, cell by cell. A simulated oscillator that grows by 1 + ε a step passes the threshold
-/// within N steps only if ε is at least about ln(threshold)/N, so cells with |ρ - 1| < c/N may disagree;
-/// c = 2 ln(threshold) leaves room for a start that hardly contains the growing mode. Others must not.
+/// Theory against simulation, cell by cell. A simulated oscillator that grows by 1 + ε a step passes the
+/// threshold within N steps only if ε is at least about ln(threshold)/N, so cells with |ρ - 1| < c/N may
+/// disagree; c = 2 ln(threshold) leaves room for a start that hardly contains the growing mode. Others must
+/// not.
 struct CellComparison {
   long cells = 0, steps = 0;
   double threshold = 1e6;

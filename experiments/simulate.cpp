@@ -50,7 +50,8 @@ StepChoice choose_step(Subject& subject, const CommonOptions& common, const Simu
   if (limits.status == LimitStatus::none)
     return {std::nullopt, "no positive step of " + options.method + " is stable with this damping"};
   if (limits.status == LimitStatus::unknown)
-    return {std::nullopt, "the stable step of " + options.method + " is not known for this damping; give --step"};
+    return {std::nullopt,
+            "the stable step of " + options.method + " is not known for this damping; give --step"};
   double step = limits.recommended.value_or(0.01);
   if (options.max_step && (step > *options.max_step || !limits.recommended)) step = *options.max_step;
   return {step, ""};
@@ -88,8 +89,8 @@ class Recorder {
     if (Scene* scene = subject_.scene()) {
       write_frame(options_.output, options_.format, frame_, scene->positions(state.x), subject_.faces());
     } else {
-      csv_->stream() << static_cast<double>(step) * h_ << ',' << subject_.system().kinetic_energy(state.v) << ','
-                     << subject_.system().potential_energy(state.x);
+      csv_->stream() << static_cast<double>(step) * h_ << ',' << subject_.system().kinetic_energy(state.v)
+                     << ',' << subject_.system().potential_energy(state.x);
       for (double x : state.x) csv_->stream() << ',' << x;
       csv_->stream() << '\n';
     }
@@ -138,7 +139,8 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   const StepChoice choice = choose_step(subject, common, options);
   if (!choice.step) {
     if (common.json) {
-      std::cout << Json{{"method", options.method}, {"step", nullptr}, {"status", choice.reason}}.dump(2) << '\n';
+      std::cout << Json{{"method", options.method}, {"step", nullptr}, {"status", choice.reason}}.dump(2)
+                << '\n';
     } else {
       std::cout << choice.reason << '\n';
     }
@@ -200,13 +202,15 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   if (common.json) {
     std::cout << report.dump(2) << '\n';
   } else {
-    std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps, h, cpu);
+    std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps,
+                      h, cpu);
     if (stop_requested) {
       std::cout << text("interrupted at t = %.6g s\n", result.time);
     } else if (diverged) {
       std::cout << text("diverged at t = %.6g s\n", static_cast<double>(result.steps + 1) * h);
     } else if (result.status != StepStatus::done) {
-      std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time, outcome(result.status));
+      std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
+                        outcome(result.status));
     } else {
       std::cout << "done\n";
     }

@@ -8,7 +8,8 @@
 
 namespace springstab {
 
-/// Tells divergence from motion by energy. In a passive system under constant gravity g the kinetic energy obeys
+/// Tells divergence from motion by energy. In a passive system under constant gravity g the kinetic energy
+/// obeys
 ///     √T(t) <= √E0 + g √(m/2) t,   E0 = kinetic plus elastic energy at the start,
 /// since elastic energy is never negative, damping takes energy and gravity gives at most g √(2mT) of power.
 /// A run that exceeds this speed `slack` times has diverged. (Stable linear steps may exceed the energy bound
@@ -28,9 +29,9 @@ struct SimulationResult {
   StepStatus status = StepStatus::done;  // of the last step; diverged also when the watch said so
 };
 
-/// Takes `steps` steps of h from `state`. `observe(step, state)` is called for step 0 and after every completed
-/// step, and stops the run by returning false. After anything but `done` the state is the last good one: not finite
-/// or not plausible states never reach the observer.
+/// Takes `steps` steps of h from `state`. `observe(step, state)` is called for step 0 and after every
+/// completed step, and stops the run by returning false. After anything but `done` the state is the last good
+/// one: not finite or not plausible states never reach the observer.
 SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, const EnergyWatch& watch,
                           State<Vector>& state,
                           const std::function<bool(long step, const State<Vector>&)>& observe = {});

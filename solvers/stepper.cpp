@@ -20,7 +20,6 @@ class StepperOf final : public Stepper {
   Method<Vector> method_;
 };
 
-
 struct Registry {
   std::vector<MethodInfo> infos;
   std::vector<std::unique_ptr<Stepper> (*)()> makers;

@@ -10,7 +10,8 @@
 
 namespace springstab {
 
-/// A method with its workspace; not to be shared between threads. The first step allocates, later ones do not.
+/// A method with its workspace; not to be shared between threads. The first step allocates, later ones do
+/// not.
 class Stepper {
  public:
   virtual ~Stepper() = default;

@@ -19,7 +19,9 @@ struct SolveReport {
 
 /// All that an explicit method uses: a = acceleration(x, v).
 template <class S, class V>
-concept Accelerating = requires(S& system, const V& x, const V& v, V& a) { system.acceleration(x, v, a); };
+concept Accelerating = requires(S& system, const V& x, const V& v, V& a) {
+  system.acceleration(x, v, a);
+};
 
 /// A linear system x'' = -K'x - D'v (+ constant): its products, and the solve that implicit methods need,
 /// (1 + hD' + h²K') out = rhs.

@@ -12,9 +12,9 @@ namespace springstab {
 namespace {
 
 bool ends_with(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() && std::equal(ending.rbegin(), ending.rend(), text.rbegin(), [](char a, char b) {
-           return a == std::tolower(static_cast<unsigned char>(b));
-         });
+  return text.size() >= ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
 }
 
 std::vector<std::vector<int>> grid_faces(const Grid& grid) {
@@ -33,11 +33,12 @@ std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles) {
   if (pins.kind == Pins::Kind::none) return {};
   if (pins.kind == Pins::Kind::indices) {
     if (!pins.indices.empty() && pins.indices.back() >= particles)
-      throw wrong("pinned particle " + std::to_string(pins.indices.back()) + " does not exist, expected 0 to " +
-                  std::to_string(particles - 1));
+      throw wrong("pinned particle " + std::to_string(pins.indices.back()) +
+                  " does not exist, expected 0 to " + std::to_string(particles - 1));
     return pins.indices;
   }
-  if (!grid) throw wrong("'first-row' and 'corners' are places on a grid, expected particle numbers for a mesh");
+  if (!grid)
+    throw wrong("'first-row' and 'corners' are places on a grid, expected particle numbers for a mesh");
   std::vector<int> numbers;
   if (pins.kind == Pins::Kind::first_row) {
     for (int j = 0; j < grid->columns; ++j) numbers.push_back(j);
@@ -197,17 +198,18 @@ DampingModel Subject::damping() {
   if (matrices_) return classify_damping(matrices_->matrices());
   using Kind = DampingModel::Kind;
   const double alpha = rayleigh_.alpha.value_or(0);
-  const Kind kind = scene_->has_own_damping()            ? Kind::general
-                    : !rayleigh_.alpha                   ? Kind::designed
+  const Kind kind = scene_->has_own_damping()         ? Kind::general
+                    : !rayleigh_.alpha                ? Kind::designed
                     : rayleigh_.d0 == 0 && alpha == 0 ? Kind::none
-                                                         : Kind::rayleigh;
+                                                      : Kind::rayleigh;
   return {kind, rayleigh_.d0, alpha};
 }
 
 void Subject::design_damping() {
   if (!scene_) throw InputError("--damping", 0, "'designed' is for scenes, expected 'own' for matrices");
   if (scene_->has_own_damping())
-    throw InputError("--damping", 0, "'designed' is not possible beside the springs' own damping, expected 'own'");
+    throw InputError("--damping", 0,
+                     "'designed' is not possible beside the springs' own damping, expected 'own'");
   rayleigh_.alpha.reset();
 }
 

@@ -16,10 +16,10 @@ namespace springstab {
 
 /// INPUT as typed; empty strings were not given. Exactly one of file, grid and stiffness must be.
 struct InputOptions {
-  std::string file;                          // SCENE.json or MESH.obj
-  std::string grid;                          // "NxM"
-  std::optional<double> spacing;             // [m], with grid
-  std::string material, pin;                 // with grid or MESH.obj
+  std::string file;               // SCENE.json or MESH.obj
+  std::string grid;               // "NxM"
+  std::optional<double> spacing;  // [m], with grid
+  std::string material, pin;      // with grid or MESH.obj
   std::string stiffness, mass, damping_matrix;
 };
 
@@ -30,7 +30,7 @@ class Subject {
   explicit Subject(const InputOptions& options);
 
   System& system();
-  Scene* scene() { return scene_.get(); }              // null for matrices
+  Scene* scene() { return scene_.get(); }               // null for matrices
   MatrixSystem* matrices() { return matrices_.get(); }  // null for scenes
 
   /// Faces of the mesh, for pictures: particle numbers; empty for matrices and nets without faces.

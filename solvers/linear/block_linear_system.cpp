@@ -9,9 +9,10 @@ using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 }  // namespace
 
-BlockLinearSystem::BlockLinearSystem(std::vector<double> mass, RayleighDamping damping,
-                                     std::span<const std::pair<int, int>> stiffness_couplings,
-                                     std::optional<std::span<const std::pair<int, int>>> own_damping_couplings)
+BlockLinearSystem::BlockLinearSystem(
+    std::vector<double> mass, RayleighDamping damping,
+    std::span<const std::pair<int, int>> stiffness_couplings,
+    std::optional<std::span<const std::pair<int, int>>> own_damping_couplings)
     : mass_(std::move(mass)),
       damping_(damping),
       stiffness_(static_cast<int>(mass_.size()), stiffness_couplings) {
@@ -78,7 +79,8 @@ SolveReport BlockLinearSystem::solve_shifted(double h, const Vector& rhs, Vector
     q.resize(size());
     stiffness_.multiply(p.data(), q.data());
     for (std::size_t i = 0; i < mass_.size(); ++i)
-      q.segment<3>(3 * i) = stiffness_factor * q.segment<3>(3 * i) + mass_factor * mass_[i] * p.segment<3>(3 * i);
+      q.segment<3>(3 * i) =
+          stiffness_factor * q.segment<3>(3 * i) + mass_factor * mass_[i] * p.segment<3>(3 * i);
     if (own_damping_) {
       product_.resize(size());
       own_damping_->multiply(p.data(), product_.data());

@@ -1,5 +1,5 @@
-// The linear system of a net of particles at one state: lumped masses, a block-sparse stiffness matrix, Rayleigh
-// damping, and a damping matrix only where the net has damping of its own.
+// The linear system of a net of particles at one state: lumped masses, a block-sparse stiffness matrix,
+// Rayleigh damping, and a damping matrix only where the net has damping of its own.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,9 @@ struct RayleighDamping {
   double alpha = 0;  // [s]
 };
 
-/// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone an
-/// acceleration is one block product, K (x + alpha v). Solves by block-Jacobi preconditioned conjugate gradients.
+/// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone
+/// an acceleration is one block product, K (x + alpha v). Solves by block-Jacobi preconditioned conjugate
+/// gradients.
 class BlockLinearSystem final : public LinearSystem {
  public:
   /// mass: one per particle [kg]. K and C [N/m, N·s/m] start at zero and are filled through stiffness() and

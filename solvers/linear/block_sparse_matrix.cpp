@@ -36,7 +36,8 @@ long BlockSparseMatrix::find(int i, int j) const {
   const auto begin = column_.begin() + row_start_.at(i), end = column_.begin() + row_start_.at(i + 1);
   const auto found = std::lower_bound(begin, end, j);
   if (found == end || *found != j)
-    throw std::out_of_range("block (" + std::to_string(i) + ", " + std::to_string(j) + ") is not in the pattern");
+    throw std::out_of_range("block (" + std::to_string(i) + ", " + std::to_string(j) +
+                            ") is not in the pattern");
   return found - column_.begin();
 }
 
@@ -61,7 +62,8 @@ Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {
     for (long k = row_start_[i]; k < row_start_[i + 1]; ++k)
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
-          if (const double v = value_[9 * k + 3 * r + c]; v != 0) triplets.emplace_back(3 * i + r, 3 * column_[k] + c, v);
+          if (const double v = value_[9 * k + 3 * r + c]; v != 0)
+            triplets.emplace_back(3 * i + r, 3 * column_[k] + c, v);
   Eigen::SparseMatrix<double> matrix(3 * rows(), 3 * rows());
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   return matrix;

@@ -10,7 +10,7 @@
 namespace springstab {
 
 struct ConjugateGradientOptions {
-  double tolerance = 1e-6;      // on ‖b - Hy‖ in the preconditioner's norm, relative to that of b
+  double tolerance = 1e-6;  // on ‖b - Hy‖ in the preconditioner's norm, relative to that of b
   long max_iterations = 10000;
 };
 
@@ -30,7 +30,8 @@ class ConjugateGradient {
     p_ = z_;
     const double goal = options.tolerance * options.tolerance * rho;
     while (rho > goal) {
-      if (report.iterations == options.max_iterations) return report.status = StepStatus::not_converged, report;
+      if (report.iterations == options.max_iterations)
+        return report.status = StepStatus::not_converged, report;
       apply(p_, q_);
       ++report.iterations;
       const double curvature = p_.dot(q_);

@@ -29,8 +29,8 @@ double largest_entry(const SparseMatrix& a) {
 SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size) {
   a.makeCompressed();
   if (a.rows() != a.cols() || a.rows() != size)
-    throw std::invalid_argument("the " + name + " matrix is " + shape(a) + ", expected " + std::to_string(size) +
-                                " x " + std::to_string(size));
+    throw std::invalid_argument("the " + name + " matrix is " + shape(a) + ", expected " +
+                                std::to_string(size) + " x " + std::to_string(size));
   for (Eigen::Index k = 0; k < a.nonZeros(); ++k)
     if (!std::isfinite(a.valuePtr()[k]))
       throw std::invalid_argument("the " + name + " matrix has an entry that is not finite");
@@ -38,8 +38,8 @@ SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size)
   const double asymmetry = largest_entry(a - transposed), largest = largest_entry(a);
   if (asymmetry > symmetry_tolerance * largest) {
     std::ostringstream message;
-    message << "the " << name << " matrix is not symmetric (an entry differs from its mirror image by " << asymmetry
-            << ", the largest entry is " << largest << "), expected a symmetric one";
+    message << "the " << name << " matrix is not symmetric (an entry differs from its mirror image by "
+            << asymmetry << ", the largest entry is " << largest << "), expected a symmetric one";
     throw std::invalid_argument(message.str());
   }
   return 0.5 * (a + transposed);
@@ -52,8 +52,8 @@ SparseMatrix extract(const SparseMatrix& a, const std::vector<Eigen::Index>& row
   for (Eigen::Index j = 0; j < a.outerSize(); ++j)
     for (SparseMatrix::InnerIterator it(a, j); it; ++it)
       if (row_position[it.row()] >= 0 && col_position[it.col()] >= 0)
-        triplets.emplace_back(static_cast<int>(row_position[it.row()]), static_cast<int>(col_position[it.col()]),
-                              it.value());
+        triplets.emplace_back(static_cast<int>(row_position[it.row()]),
+                              static_cast<int>(col_position[it.col()]), it.value());
   SparseMatrix part(rows, cols);
   part.setFromTriplets(triplets.begin(), triplets.end());
   return part;
@@ -68,9 +68,9 @@ void condense(StructuralMatrices& s) {
   if (b == 0) return;
   if (a == 0) throw std::invalid_argument("the mass matrix is zero, expected some mass");
   if (a > largest_condensed)
-    throw std::invalid_argument("eliminating " + std::to_string(b) + " massless unknowns would fill a matrix of " +
-                                std::to_string(a) + " unknowns, expected at most " +
-                                std::to_string(largest_condensed));
+    throw std::invalid_argument("eliminating " + std::to_string(b) +
+                                " massless unknowns would fill a matrix of " + std::to_string(a) +
+                                " unknowns, expected at most " + std::to_string(largest_condensed));
   if (s.has_damping()) {
     const Eigen::VectorXd damped = s.damping.cwiseAbs() * Eigen::VectorXd::Ones(n);
     for (Eigen::Index i = 0; i < n; ++i)

@@ -16,10 +16,10 @@ struct StructuralMatrices {
   bool has_damping() const { return damping.nonZeros() > 0; }
 };
 
-/// Checks the matrices (square, of one size, finite, symmetric to 1e-10 of their largest entry; what is left of
-/// the asymmetry is averaged away) and eliminates unknowns whose row of M is zero: they follow the others,
-/// K ← K_aa - K_ab K_bb⁻¹ K_ba, which needs K_bb positive definite and no damping on them. An empty M stands for
-/// the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
+/// Checks the matrices (square, of one size, finite, symmetric to 1e-10 of their largest entry; what is left
+/// of the asymmetry is averaged away) and eliminates unknowns whose row of M is zero: they follow the others,
+/// K ← K_aa - K_ab K_bb⁻¹ K_ba, which needs K_bb positive definite and no damping on them. An empty M stands
+/// for the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
 StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass = {}, SparseMatrix damping = {});
 
 /// Whether nothing is stored off the diagonal.

@@ -9,7 +9,9 @@
 namespace springstab {
 namespace {
 
-void append(std::vector<double>& list, const Eigen::Vector3d& p) { list.insert(list.end(), {p.x(), p.y(), p.z()}); }
+void append(std::vector<double>& list, const Eigen::Vector3d& p) {
+  list.insert(list.end(), {p.x(), p.y(), p.z()});
+}
 
 // The springs with a property, renumbered, without those between two pinned particles.
 template <class Wanted>
@@ -48,7 +50,8 @@ Scene::Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::
     is_pinned[i] = true;
   }
   free_count_ = static_cast<int>(std::count(is_pinned.begin(), is_pinned.end(), false));
-  if (free_count_ == 0) throw std::invalid_argument("all particles are pinned, expected at least one that can move");
+  if (free_count_ == 0)
+    throw std::invalid_argument("all particles are pinned, expected at least one that can move");
 
   number_.resize(n);
   std::vector<double> mass;
@@ -63,7 +66,8 @@ Scene::Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::
   auto elastic = select(net.springs, number_, free_count_, [](const Spring& s) { return s.stiffness > 0; });
   auto damped = select(net.springs, number_, free_count_, [](const Spring& s) { return s.damping > 0; });
   if (!elastic.empty()) elastic_terms_.push_back(std::make_unique<Springs>(std::move(elastic), free_count_));
-  if (!damped.empty()) damping_terms_.push_back(std::make_unique<AxialDamping>(std::move(damped), free_count_));
+  if (!damped.empty())
+    damping_terms_.push_back(std::make_unique<AxialDamping>(std::move(damped), free_count_));
 
   const Couplings stiffness = all_couplings(elastic_terms_);
   if (damping_terms_.empty()) {
@@ -116,7 +120,8 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   for (const auto& term : damping_terms_)
     term->add_force(positions, {v.data(), pinned_velocity_.data(), free_count_}, out.data());
   for (int i = 0; i < free_count_; ++i)
-    out.segment<3>(3 * static_cast<long>(i)) = out.segment<3>(3 * static_cast<long>(i)) / linear_->mass()[i] + gravity_;
+    out.segment<3>(3 * static_cast<long>(i)) =
+        out.segment<3>(3 * static_cast<long>(i)) / linear_->mass()[i] + gravity_;
   if (damping_.d0 != 0) out -= damping_.d0 * v;
 }
 

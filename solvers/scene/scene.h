@@ -13,8 +13,9 @@
 
 namespace springstab {
 
-/// M x'' = f_elastic(x) + M g - d0 M v - alpha K(x) v - C(x) v. Rayleigh damping uses the exact K at the positions
-/// that a force is evaluated at; the change of the damping matrices with x is neglected in the linearization.
+/// M x'' = f_elastic(x) + M g - d0 M v - alpha K(x) v - C(x) v. Rayleigh damping uses the exact K at the
+/// positions that a force is evaluated at; the change of the damping matrices with x is neglected in the
+/// linearization.
 class Scene final : public System {
  public:
   /// A net with the given particles pinned at their rest positions. `pinned` ascends without repeats.
@@ -52,9 +53,9 @@ class Scene final : public System {
   ParticleField position_field(const Vector& x) const;
 
   int free_count_ = 0;
-  std::vector<int> number_;         // particle -> its place: free ones first, then pinned ones
-  std::vector<double> rest_;        // positions of the free particles
-  std::vector<double> pinned_;      // positions of the pinned ones
+  std::vector<int> number_;              // particle -> its place: free ones first, then pinned ones
+  std::vector<double> rest_;             // positions of the free particles
+  std::vector<double> pinned_;           // positions of the pinned ones
   std::vector<double> pinned_velocity_;  // zeros
   Eigen::Vector3d gravity_;
   RayleighDamping damping_;

@@ -37,7 +37,8 @@ void add_pair(const Spring& s, int free_count, double c, const double* u, double
 }
 
 // matrix += [[B, -B], [-B, B]] with B = a I + b nnᵀ, on the free particles.
-void add_blocks(const Spring& s, int free_count, double a, double b, const double* n, BlockSparseMatrix& matrix) {
+void add_blocks(const Spring& s, int free_count, double a, double b, const double* n,
+                BlockSparseMatrix& matrix) {
   const bool i = s.i < free_count, j = s.j < free_count;
   if (i) add_isotropic_and_axial(matrix.block(matrix.diagonal(s.i)), a, b, n);
   if (j) add_isotropic_and_axial(matrix.block(matrix.diagonal(s.j)), a, b, n);

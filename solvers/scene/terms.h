@@ -31,8 +31,10 @@ class ElasticTerm {
   virtual double energy(const ParticleField& x) const = 0;
   /// force -= ∂E/∂x [N].
   virtual void add_force(const ParticleField& x, double* force) const = 0;
-  /// out += scale · K(x) u with K = ∂²E/∂x², exact, not projected; u and out have 3 entries per free particle.
-  virtual void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const = 0;
+  /// out += scale · K(x) u with K = ∂²E/∂x², exact, not projected; u and out have 3 entries per free
+  /// particle.
+  virtual void add_stiffness_times(const ParticleField& x, const double* u, double scale,
+                                   double* out) const = 0;
   virtual Couplings couplings() const = 0;
   /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
   virtual void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;

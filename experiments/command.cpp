@@ -169,7 +169,8 @@ int run_command(int argc, const char* const* argv) {
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(
-      "Each subcommand has its own --help. Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
+      "The options above are accepted before and after a subcommand, which has its own --help.\n"
+      "Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
       "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
   add_methods(app, common, chosen);
   add_region(app, common, region, chosen);

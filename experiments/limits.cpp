@@ -118,20 +118,25 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
         "semidefinite one");
   const DampingModel damping = subject.damping();
 
-  Json list = Json::array();
+  struct Row {
+    std::string_view method;
+    MethodLimits limits;  // all unknown if k0 is not
+  };
+  std::vector<Row> rows;
   int status = k0.converged ? done : no_answer;
-  if (!common.json && k0.converged) print(structure, k0, damping, options.safety);
   for (const MethodInfo& info : all_methods()) {
     if (!options.method.empty() && info.name != options.method) continue;
-    MethodLimits limits;  // all unknown
+    MethodLimits limits;
     if (k0.converged) limits = method_limits(info.name, k0, damping, options.safety);
     if (limits.status == LimitStatus::unlimited) limits.recommended = options.max_step;
-    list.push_back(limits_json(info.name, limits, damping.d0));
-    if (!common.json && k0.converged) print(info.name, limits);
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
+    rows.push_back({info.name, limits});
   }
+
   if (common.json) {
+    Json list = Json::array();
+    for (const Row& row : rows) list.push_back(limits_json(row.method, row.limits, damping.d0));
     std::cout << Json{{"degrees_of_freedom", structure.size()},
                       {"condensed", structure.condensed},
                       {"k0", k0_json(k0)},
@@ -141,9 +146,11 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                       {"methods", list}}
                      .dump(2)
               << '\n';
-  } else if (!k0.converged) {
-    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products,
-                      k0.upper_bound);
+  } else if (k0.converged) {
+    print(structure, k0, damping, options.safety);
+    for (const Row& row : rows) print(row.method, row.limits);
+  } else {
+    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products, k0.upper_bound);
   }
   return status;
 }

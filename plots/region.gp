@@ -30,8 +30,8 @@ set xzeroaxis lt 1 lw 1 lc rgb '#999999'
 set yzeroaxis lt 1 lw 1 lc rgb '#999999'
 set tics out nomirror
 set border 3
-set key bmargin center vertical maxrows 4 Left reverse samplen 2.5 spacing 1.25 width 2 font ',11'
-set bmargin 9
+set key at screen 0.53, 0.155 top center vertical maxrows 4 Left reverse samplen 2.5 spacing 1.3 font ',11'
+set bmargin at screen 0.24
 
 heading = method . ': where a mode is stable' . (number ne '' ? '  (Fig. ' . number . ' of the paper)' : '')
 verdict = sprintf('%d oscillators simulated for %d steps; %d differ from theory, %d of them where |ρ − 1| ≥ %.2g', \
@@ -65,9 +65,9 @@ plot for [i = 1:has_over] data . '_pieces.csv' using 1:2:3 with filledcurves fil
          title 'over-stable: d < 0 or k < 0 grows, the method damps it', \
      data . '_pieces.csv' using ($1 >= 0 && $3 > 0 ? $1 : NaN):(positive($2)):3 with filledcurves fillcolor rgb stable_colour \
          title 'stable', \
-     data . '_cells.csv' using ($4 == 0 ? $1 : NaN):2 with points pt 7 ps 0.25 lc rgb cell_colour \
+     data . '_cells.csv' using ($4 == 0 ? $1 : NaN):2 with points pt 7 ps 0.3 lc rgb cell_colour \
          title 'simulated: stays bounded', \
-     '' using ($4 == 1 ? $1 : NaN):2 with points pt 2 ps 0.35 lw 0.8 lc rgb diverged_colour \
+     '' using ($4 == 1 ? $1 : NaN):2 with points pt 2 ps 0.4 lw 0.8 lc rgb diverged_colour \
          title 'simulated: diverges', \
      x**2 / 4 with lines lw 1.5 dt (8, 5) lc rgb parabola_colour title 'X² = 4Y: critical damping', \
      data . '_boundary.csv' using 2:3 with lines lw 2.5 lc rgb edge_colour title 'exact boundary: |λ| = 1', \

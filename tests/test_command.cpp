@@ -1,0 +1,344 @@
+// The command as people and programs use it: run as a process, judged by its exit status, stdout and files.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+struct Outcome {
+  int status;
+  std::string out, err;
+
+  Json json() const { return Json::parse(out); }
+};
+
+// A folder of its own per test case, removed at the end.
+class Command {
+ public:
+  Command() : folder_(fs::temp_directory_path() / ("springstab command " + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Command() { fs::remove_all(folder_); }
+
+  fs::path file(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name) << content;
+    return folder_ / name;
+  }
+  fs::path folder() const { return folder_; }
+
+  Outcome operator()(const std::string& arguments) const {
+    const fs::path err = folder_ / "stderr";
+    const std::string line =
+        "cd '" + folder_.string() + "' && '" SPRINGSTAB_COMMAND "' " + arguments + " 2>'" + err.string() + "'";
+    FILE* pipe = popen(line.c_str(), "r");
+    BOOST_REQUIRE(pipe);
+    Outcome outcome{};
+    std::array<char, 4096> buffer;
+    while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) outcome.out.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    BOOST_REQUIRE(WIFEXITED(status));
+    outcome.status = WEXITSTATUS(status);
+    std::ostringstream text;
+    text << std::ifstream(err).rdbuf();
+    outcome.err = text.str();
+    fs::remove(err);
+    return outcome;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+// Name -> entry of a list of methods.
+Json by_name(const Json& list, const std::string& name) {
+  for (const Json& entry : list)
+    if (entry.at("name") == name) return entry;
+  BOOST_FAIL("no method " + name);
+  return {};
+}
+
+long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+bool close(const Json& value, double expected, double tolerance = 1e-9) {
+  return value.is_number() && std::abs(value.get<double>() - expected) <= tolerance * std::abs(expected);
+}
+
+const char* square =
+    "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\n"
+    "f 1 2 3 4\n";
+
+}  // namespace
+
+BOOST_FIXTURE_TEST_SUITE(command, Command)
+
+BOOST_AUTO_TEST_CASE(methods_are_listed_with_their_constants) {
+  const Outcome run = (*this)("methods --json");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  const Json list = run.json().at("methods");
+  const Json rk4 = by_name(list, "rk4"), implicit = by_name(list, "implicit-euler");
+  BOOST_TEST(close(rk4["y_max"], 8.7623104291285, 1e-10));
+  BOOST_TEST(close(rk4["x_at_y_max"], 0.8254052495503, 1e-10));
+  BOOST_TEST(rk4["y_max_attained"] == true);
+  BOOST_TEST(close(rk4["real_interval"], 2.785293563405, 1e-10));
+  BOOST_TEST(close(rk4["imaginary_interval"], 2 * std::sqrt(2.0), 1e-10));
+  BOOST_TEST(rk4["force_evaluations"] == 4);
+  BOOST_TEST(rk4["order"] == 4);
+  BOOST_TEST(rk4["implicit"] == false);
+  BOOST_TEST(implicit["implicit"] == true);
+  BOOST_TEST(implicit["y_max"] == "inf");
+  BOOST_TEST(implicit["x_at_y_max"].is_null());
+  BOOST_TEST(implicit["real_interval"] == "inf");
+  BOOST_TEST(by_name(list, "explicit-euler")["imaginary_interval"] == 0.0);
+  BOOST_TEST(by_name(list, "symplectic-euler")["y_max_attained"] == false);
+}
+
+BOOST_AUTO_TEST_CASE(global_options_stand_before_or_after_the_subcommand) {
+  const Outcome before = (*this)("--json --seed 3 --threads 2 --quiet limits --grid 4x5 --pin first-row");
+  const Outcome after = (*this)("limits --grid 4x5 --pin first-row --quiet --threads 2 --seed 3 --json");
+  BOOST_TEST(before.status == 0);
+  BOOST_TEST(before.out == after.out);
+  BOOST_TEST(after.json()["degrees_of_freedom"] == 3 * 15);
+}
+
+BOOST_AUTO_TEST_CASE(a_region_has_its_cells_and_exact_area_in_any_window) {
+  const Outcome run = (*this)(
+      "region explicit-euler --x 0:2 --y -1:3 --nx 40 --ny 50 --raster raster.csv --boundary edge.csv --json");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  const Json report = run.json();
+  BOOST_TEST(report["cells"] == 2000);
+  BOOST_TEST(close(report["area"], 2, 1e-10));  // Y < X, 0 < X < 2
+  BOOST_TEST(report["y_max"].get<double>() > 3.999999999);
+  std::ifstream raster(folder() / "raster.csv");
+  std::string header, row;
+  std::getline(raster, header);
+  BOOST_TEST(header == "x,y,spectral_radius");
+  long rows = 0, stable = 0;
+  while (std::getline(raster, row)) {
+    double x, y, rho;
+    BOOST_REQUIRE_EQUAL(std::sscanf(row.c_str(), "%lf,%lf,%lf", &x, &y, &rho), 3);
+    ++rows;
+    stable += rho < 1 - 1e-9;
+    if (rho < 1 - 1e-9) BOOST_TEST((0 < y && y < x && y > 2 * x - 4));
+  }
+  BOOST_TEST(rows == 2000);
+  BOOST_TEST(report["stable_cells"] == stable);
+  BOOST_TEST(fs::file_size(folder() / "edge.csv") > 100u);
+}
+
+BOOST_AUTO_TEST_CASE(undamped_limits_follow_from_k0) {
+  const Json report = (*this)("limits --grid 6x7 --pin corners --json").json();
+  const double k0 = report["k0"]["value"];
+  BOOST_TEST(report["k0"]["upper_bound"].get<double>() >= k0);
+  BOOST_TEST(report["damping"]["kind"] == "none");
+  const Json list = report["methods"];
+  BOOST_TEST(close(by_name(list, "rk4")["h_max"], std::sqrt(8 / k0)));
+  BOOST_TEST(close(by_name(list, "rk4")["designed"]["h_max"], std::sqrt(8.7623104291285 / k0)));
+  BOOST_TEST(close(by_name(list, "symplectic-euler")["h_max"], 2 / std::sqrt(k0)));
+  BOOST_TEST(close(by_name(list, "symplectic-euler")["recommended_step"], 2 / std::sqrt(1.5 * k0)));
+  for (const char* method : {"explicit-euler", "rk2"}) {
+    const Json none = by_name(list, method);
+    BOOST_TEST(none["status"] == "none");
+    BOOST_TEST(none["h_max"].is_null());
+    BOOST_TEST(none["recommended_step"].is_null());
+  }
+  const Json implicit = by_name(list, "implicit-euler");
+  BOOST_TEST(implicit["status"] == "unlimited");
+  BOOST_TEST(implicit["h_max"] == "inf");
+  BOOST_TEST(implicit["recommended_step"] == 0.01);
+  for (const Json& entry : list)
+    if (entry["h_max"].is_number())
+      BOOST_TEST(entry["h_certified"].get<double>() <= entry["h_max"].get<double>());
+}
+
+BOOST_AUTO_TEST_CASE(no_answer_is_status_3_and_prints_what_is_known) {
+  const Outcome limits = (*this)("limits --grid 4x4 --method rk2 --json");
+  BOOST_TEST(limits.status == 3);
+  BOOST_TEST(limits.json()["k0"]["value"].is_number());
+  const Outcome run = (*this)("simulate --grid 4x4 --method rk2 --duration 0.1 --json --output frames");
+  BOOST_TEST(run.status == 3);
+  BOOST_TEST(run.json()["step"].is_null());
+  BOOST_TEST(!fs::exists(folder() / "frames"));
+  BOOST_TEST((*this)("limits --grid 4x4 --certify").status == 3);
+  BOOST_TEST((*this)("limits --grid 4x4 --certify --method rk4").status == 0);
+}
+
+BOOST_AUTO_TEST_CASE(springs_with_their_own_damping_have_unknown_limits_but_run_when_given_a_step) {
+  const fs::path scene = file("scene.json", R"({"geometry": {"grid": [4, 4]}, "pins": "first-row",
+    "material": {"damping": {"structural": 1e-4, "shear": 1e-4, "bending": 1e-4}}})");
+  const Json report = (*this)("limits scene.json --json").json();
+  BOOST_TEST(report["damping"]["kind"] == "general");
+  BOOST_TEST(by_name(report["methods"], "rk4")["status"] == "unknown");
+  BOOST_TEST(by_name(report["methods"], "implicit-euler")["status"] == "unlimited");
+  BOOST_TEST((*this)("simulate scene.json --method rk4 --duration 0.1").status == 3);
+  BOOST_TEST((*this)("simulate scene.json --method rk4 --duration 0.1 --step 5e-4").status == 0);
+}
+
+BOOST_AUTO_TEST_CASE(a_run_ends_at_the_duration_and_leaves_its_frames) {
+  file("cloth.obj", square);
+  const Outcome run =
+      (*this)("simulate cloth.obj --pin 0,1 --method symplectic-euler --duration 0.5 --step 0.003 --max-step 1 "
+              "--output frames --frames 4 --json");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  const Json report = run.json();
+  BOOST_TEST(report["steps"] == 167);
+  BOOST_TEST(close(report["step"], 0.5 / 167, 1e-15));
+  BOOST_TEST(report["diverged"] == false);
+  BOOST_TEST(report["diverged_at"].is_null());
+  BOOST_TEST(report["counts"]["force_evaluations"] == 167);
+  BOOST_TEST(report["counts"]["hessian_assemblies"] == 0);
+  BOOST_TEST(report["frames"] == 5);
+  for (int i = 0; i < 5; ++i)
+    BOOST_TEST(fs::exists(folder() / "frames" / ("frame_0000" + std::to_string(i) + ".obj")));
+  BOOST_TEST(std::distance(fs::directory_iterator(folder() / "frames"), fs::directory_iterator()) == 5);
+
+  std::ifstream last(folder() / "frames" / "frame_00004.obj");
+  std::string word;
+  double x, y, z;
+  for (int vertex = 0; vertex < 4; ++vertex) BOOST_REQUIRE((last >> word >> x >> y >> z) && word == "v");
+  const Json position = report["last_particle"]["position"];
+  BOOST_TEST((close(position[0], x, 1e-15) && close(position[1], y, 1e-15) && close(position[2], z, 1e-15)));
+  BOOST_TEST((last >> word && word == "f"));
+}
+
+BOOST_AUTO_TEST_CASE(divergence_is_status_4_with_its_time) {
+  const Outcome run = (*this)("simulate --grid 8x8 --pin corners --method symplectic-euler --duration 1 --step 0.01 "
+                              "--output frames --json");
+  BOOST_TEST(run.status == 4);
+  const Json report = run.json();
+  BOOST_TEST(report["diverged"] == true);
+  BOOST_TEST(close(report["diverged_at"], (report["steps"].get<double>() + 1) * 0.01));
+  for (const fs::directory_entry& frame : fs::directory_iterator(folder() / "frames")) {
+    std::ostringstream text;
+    text << std::ifstream(frame.path()).rdbuf();
+    BOOST_TEST(text.str().find("nan") == std::string::npos);
+    BOOST_TEST(text.str().find("inf") == std::string::npos);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(designed_damping_makes_explicit_euler_run) {
+  const Outcome run =
+      (*this)("simulate --grid 6x6 --pin first-row --method explicit-euler --duration 0.2 --damping designed --json");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  const Json report = run.json();
+  BOOST_TEST(close(report["damping"]["alpha"], report["step"], 1e-9));  // d0 = 0: alpha = h
+
+  file("scene.json", R"({"geometry": {"grid": [6, 6]}, "pins": "first-row", "damping": {"d0": 2, "alpha": "designed"}})");
+  const Json limits = (*this)("limits scene.json --json").json();
+  const Json euler = by_name(limits["methods"], "explicit-euler");
+  BOOST_TEST(limits["damping"]["alpha"] == "designed");
+  BOOST_TEST(euler["h_max"] == euler["designed"]["h_max"]);
+  const double h = euler["designed"]["h_max"];
+  BOOST_TEST(close(euler["designed"]["alpha"], h * (4 - 2 * h) / 4, 1e-9));  // paper Eq. 31
+}
+
+BOOST_AUTO_TEST_CASE(matrices_give_limits_and_a_trajectory_from_the_seed) {
+  file("k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2\n2 1 -1\n2 2 2\n");
+  const Json report = (*this)("limits --stiffness k.mtx --json").json();
+  BOOST_TEST(close(report["k0"]["value"], 3, 1e-12));
+  const std::string run = "simulate --stiffness k.mtx --method rk4 --duration 2 --output ";
+  BOOST_TEST((*this)(run + "a --seed 1").status == 0);
+  BOOST_TEST((*this)(run + "b --seed 1").status == 0);
+  BOOST_TEST((*this)(run + "c --seed 2").status == 0);
+  const auto content = [&](const char* name) {
+    std::ostringstream text;
+    text << std::ifstream(folder() / name / "trajectory.csv").rdbuf();
+    return text.str();
+  };
+  BOOST_TEST(content("a") == content("b"));
+  BOOST_TEST(content("a") != content("c"));
+  double x1, x2;
+  std::istringstream rows(content("a"));
+  std::string row;
+  std::getline(rows, row);
+  BOOST_TEST(row == "t,kinetic_energy,potential_energy,x1,x2");
+  std::getline(rows, row);
+  BOOST_REQUIRE_EQUAL(std::sscanf(row.c_str(), "%*f,%*f,%*f,%lf,%lf", &x1, &x2), 2);
+  BOOST_TEST(close(Json(x1 * x1 + x2 * x2), 1, 1e-14));  // unit M-norm
+}
+
+BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
+  file("cloth.obj", square);
+  file("broken.obj", "v 0 0 0\nv 1 0 zero\nf 1 2 1\n");
+  file("line.obj", "v 0 0 0\nv 1 0 0\nv 1 0 0\nf 1 2 3\n");
+  file("heavy.json", R"({"geometry": {"mesh": "cloth.obj"}, "material": {"area_density": -1}})");
+  file("typo.json", "{\"geometry\": {\"grid\": [3, 3]},\n \"gravty\": [0, 0, 0]}");
+  file("skew.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 2 1\n2 1 -1\n");
+  file("saddle.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n2 2 -1\n");
+  file("one.mtx", "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 1\n");
+  const std::string simulate = "simulate cloth.obj --method rk4 --duration 1 --output out ";
+  const std::pair<std::string, std::string> cases[] = {
+      {"", "subcommand"},
+      {"limits", "nothing was given"},
+      {"limits cloth.obj --grid 3x3", "more than one"},
+      {"limits absent.obj", "absent.obj"},
+      {"limits broken.obj", "broken.obj:2"},
+      {"limits line.obj", "line.obj:4"},
+      {"limits heavy.json", "heavy.json:1"},
+      {"limits typo.json", "gravity"},
+      {"limits typo.json", "typo.json:2"},
+      {"limits heavy.json --pin 0", "scene file itself"},
+      {"limits --grid 3by3", "ROWSxCOLUMNS"},
+      {"limits --grid 2x2 --pin 0-3", "all particles are pinned"},
+      {"limits --grid 2x2 --pin 7", "does not exist"},
+      {"limits cloth.obj --pin first-row", "grid"},
+      {"limits --grid 2x2 --material sof", "soft"},
+      {"limits --grid 2x2 --safety 0.9", "safety"},
+      {"limits --grid 2x2 --safety nan", "safety"},
+      {"limits --grid 2x2 --method rk3", "rk4"},
+      {"limits --grid 2x2 --spacing -1", "--grid"},
+      {"limits --stiffness skew.mtx", "not symmetric"},
+      {"limits --stiffness saddle.mtx", "indefinite"},
+      {"limits --stiffness saddle.mtx --mass one.mtx", "mass matrix is 1 x 1"},
+      {"limits --mass one.mtx cloth.obj", "--stiffness"},
+      {"region rk4 --x 2:1", "--x"},
+      {"region rk4 --nx 0", "--nx"},
+      {"region rk4 --raster no/such/folder.csv", "no/such/folder.csv"},
+      {simulate + "--step 0", "--step"},
+      {simulate + "--step nan", "--step"},
+      {simulate + "--frames 0", "--frames"},
+      {simulate + "--format ply", "ply"},
+      {simulate + "--damping some", "some"},
+      {"simulate --stiffness one.mtx --method rk4 --duration 1 --damping designed", "designed"},
+      {"simulate cloth.obj --method rk4 --duration -1", "--duration"},
+      {"figures 9", "9"},
+      {"figures --plots . 1", "region.gp"},
+  };
+  const auto files = [&] { return std::distance(fs::directory_iterator(folder()), fs::directory_iterator()); };
+  const auto before = files();
+  for (const auto& [arguments, word] : cases) {
+    const Outcome run = (*this)(arguments);
+    BOOST_TEST_CONTEXT(arguments << " -> " << run.err) {
+      BOOST_TEST(run.status == 2);
+      BOOST_TEST(run.out.empty());
+      BOOST_TEST(lines(run.err) == 1);
+      BOOST_TEST(run.err.find(word) != std::string::npos);
+      BOOST_TEST(files() == before);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(help_has_examples_and_version_is_a_number) {
+  BOOST_TEST((*this)("--help").status == 0);
+  for (const char* subcommand : {"methods", "region", "limits", "simulate", "figures"}) {
+    const Outcome help = (*this)(std::string(subcommand) + " --help");
+    BOOST_TEST(help.status == 0);
+    BOOST_TEST(help.out.find("example") != std::string::npos);
+  }
+  int major, minor, patch;
+  BOOST_TEST(std::sscanf((*this)("--version").out.c_str(), "%d.%d.%d", &major, &minor, &patch) == 3);
+}
+
+BOOST_AUTO_TEST_SUITE_END()

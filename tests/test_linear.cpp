@@ -1,0 +1,582 @@
+// The linear systems: their products and solves are those of the dense matrices that they stand for, and
+// matrices that no structure has are refused by name.
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "solvers/linear/block_linear_system.h"
+#include "solvers/linear/matrix_system.h"
+#include "solvers/stepper.h"
+
+using namespace springstab;
+
+namespace {
+
+using Dense = Eigen::MatrixXd;
+using IndexPair = std::pair<int, int>;
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+const double nan_value = std::numeric_limits<double>::quiet_NaN();
+const double inf = std::numeric_limits<double>::infinity();
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double operator()(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
+  int index(int size) { return std::uniform_int_distribution(0, size - 1)(engine_); }
+  Vector vector(Eigen::Index size) {
+    Vector v(size);
+    for (double& entry : v) entry = (*this)(-1, 1);
+    return v;
+  }
+  Dense matrix(Eigen::Index rows, Eigen::Index columns) {
+    Dense a(rows, columns);
+    for (double& entry : a.reshaped()) entry = (*this)(-1, 1);
+    return a;
+  }
+  /// Symmetric positive definite, with a condition number of some hundreds.
+  Dense definite(Eigen::Index size) {
+    const Dense a = matrix(size, size);
+    return a * a.transpose() + 0.1 * Dense::Identity(size, size);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Pairs that repeat themselves, the other way round too, and couple a row with itself.
+std::vector<IndexPair> random_couplings(int rows, int count, Random& random) {
+  std::vector<IndexPair> pairs;
+  for (int k = 0; k < count; ++k) {
+    const int i = random.index(rows), j = random.index(rows);
+    pairs.emplace_back(i, j);
+    if (k % 3 == 0) pairs.emplace_back(j, i);
+    if (k % 4 == 0) pairs.emplace_back(i, i);
+  }
+  return pairs;
+}
+
+void check_equal(const Vector& found, const Vector& expected, double tolerance) {
+  BOOST_REQUIRE_EQUAL(found.size(), expected.size());
+  BOOST_TEST((found - expected).norm() <= tolerance * expected.norm(),
+             "relative difference " << (found - expected).norm() / expected.norm());
+  BOOST_TEST(expected.norm() > 0);
+}
+
+/// Fills a symmetric matrix that is positive definite by the dominance of its diagonal blocks.
+void fill_definite(BlockSparseMatrix& a, double size, Random& random) {
+  for (int i = 0; i < a.rows(); ++i) {
+    const Dense own = random.definite(3);
+    for (int r = 0; r < 9; ++r) a.block(a.diagonal(i))[r] += size * own(r / 3, r % 3);
+  }
+  for (int i = 0; i < a.rows(); ++i)
+    for (int j = 0; j < i; ++j) {
+      long lower = 0;
+      try {
+        lower = a.find(i, j);
+      } catch (const std::out_of_range&) {
+        continue;
+      }
+      const long upper = a.find(j, i);
+      for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c)
+          a.block(lower)[3 * r + c] = a.block(upper)[3 * c + r] = size * random(-0.5, 0.5);
+        a.block(a.diagonal(i))[4 * r] += 1.5 * size;
+        a.block(a.diagonal(j))[4 * r] += 1.5 * size;
+      }
+    }
+}
+
+/// Masses over six powers of ten, and a stiffness as large beside them in the middle.
+BlockLinearSystem random_system(int particles, RayleighDamping damping, bool own_damping, Random& random) {
+  std::vector<double> mass;
+  for (int i = 0; i < particles; ++i) mass.push_back(std::pow(10, random(-3, 3)));
+  const auto stiffness = random_couplings(particles, 2 * particles, random);
+  const auto own = random_couplings(particles, particles, random);
+  BlockLinearSystem system = own_damping ? BlockLinearSystem(mass, damping, stiffness, own)
+                                         : BlockLinearSystem(mass, damping, stiffness);
+  fill_definite(system.stiffness(), 1, random);
+  if (own_damping) fill_definite(*system.own_damping(), 0.3, random);
+  return system;
+}
+
+/// K, M and D of a block system, dense.
+struct DenseSystem {
+  Dense k, m, d;
+
+  explicit DenseSystem(BlockLinearSystem& s) : k(s.stiffness().to_sparse()) {
+    Vector mass(s.size());
+    for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = s.mass()[i / 3];
+    m = mass.asDiagonal();
+    d = s.damping().d0 * m + s.damping().alpha * k;
+    if (s.own_damping()) d += Dense(s.own_damping()->to_sparse());
+  }
+  Dense shifted(double h) const { return m + h * d + h * h * k; }
+  Vector acceleration(const Vector& x, const Vector& v) const { return -m.llt().solve(k * x + d * v); }
+};
+
+const RayleighDamping dampings[] = {{0, 0}, {0.7, 0}, {0, 0.2}, {0.7, 0.2}};
+
+/// Visits block systems without and with damping of each kind.
+void for_each_system(const std::function<void(BlockLinearSystem&, Random&)>& visit) {
+  for (const RayleighDamping& damping : dampings)
+    for (const bool own : {false, true})
+      for (const int particles : {1, 2, 9, 20})
+        BOOST_TEST_CONTEXT("d0 " << damping.d0 << ", alpha " << damping.alpha << ", own damping " << own
+                                 << ", " << particles << " particles") {
+          Random random(static_cast<std::uint64_t>(particles));
+          BlockLinearSystem system = random_system(particles, damping, own, random);
+          visit(system, random);
+        }
+}
+
+/// A chain of particles between two walls: the block form of the second difference, times k.
+BlockLinearSystem chain(int particles, double k) {
+  std::vector<IndexPair> pairs;
+  for (int i = 0; i + 1 < particles; ++i) pairs.emplace_back(i, i + 1);
+  BlockLinearSystem system(std::vector<double>(particles, 1.0), {}, pairs);
+  BlockSparseMatrix& a = system.stiffness();
+  const double axis[3] = {0, 0, 0};
+  for (int i = 0; i < particles; ++i) {
+    add_isotropic_and_axial(a.block(a.diagonal(i)), 2 * k, 0, axis);
+    if (i == 0) continue;
+    add_isotropic_and_axial(a.block(a.find(i, i - 1)), -k, 0, axis);
+    add_isotropic_and_axial(a.block(a.find(i - 1, i)), -k, 0, axis);
+  }
+  return system;
+}
+
+SparseMatrix sparse(const Dense& a) { return a.sparseView(0.0, 0.0); }
+
+/// Checks that the action throws std::invalid_argument with those words, and says what was expected.
+void expect_refused(const std::function<void()>& action, const std::string& words) {
+  try {
+    action();
+    BOOST_ERROR("nothing was thrown, expected \"" + words + '"');
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    BOOST_TEST(what.find(words) != std::string::npos, what << " does not say " << words);
+    BOOST_TEST(what.find("expected") != std::string::npos, what << " does not say what was expected");
+  }
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(linear)
+
+BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
+  Random random(11);
+  for (const int rows : {1, 2, 5, 17, 40})
+    for (const int count : {0, rows, 4 * rows})
+      BOOST_TEST_CONTEXT(rows << " rows, " << count << " couplings") {
+        const auto couplings = random_couplings(rows, count, random);
+        BlockSparseMatrix a(rows, couplings);
+        std::set<IndexPair> pattern;
+        for (int i = 0; i < rows; ++i) pattern.emplace(i, i);
+        for (const auto& [i, j] : couplings) pattern.insert({{i, j}, {j, i}});
+        BOOST_TEST(a.rows() == rows);
+        BOOST_TEST(a.blocks() == static_cast<long>(pattern.size()));
+
+        Dense dense = Dense::Zero(3 * rows, 3 * rows);
+        std::set<long> places;
+        for (int i = 0; i < rows; ++i)
+          for (int j = 0; j < rows; ++j) {
+            if (!pattern.contains({i, j})) {
+              BOOST_CHECK_THROW(a.find(i, j), std::out_of_range);
+              continue;
+            }
+            const long where = a.find(i, j);
+            places.insert(where);
+            if (i == j) BOOST_TEST(where == a.diagonal(i));
+            for (int r = 0; r < 9; ++r)
+              dense(3 * i + r / 3, 3 * j + r % 3) = a.block(where)[r] = random(-1, 1);
+          }
+        BOOST_TEST(places.size() == pattern.size(), "two blocks share a place");
+        BOOST_TEST((*places.begin() == 0 && *places.rbegin() == a.blocks() - 1));
+
+        BOOST_TEST((Dense(a.to_sparse()) == dense));
+        const Vector in = random.vector(3 * rows);
+        Vector out = Vector::Constant(3 * rows, nan_value);
+        a.multiply(in.data(), out.data());
+        // A sum of n products is off by at most n eps times the sum of their sizes.
+        const Vector bound = 3 * rows * eps * (dense.cwiseAbs() * in.cwiseAbs());
+        BOOST_TEST(((out - dense * in).array().abs() <= bound.array()).all());
+        BOOST_TEST(out.norm() > 0);
+
+        a.set_zero();
+        BOOST_TEST(a.to_sparse().nonZeros() == 0);
+        BOOST_TEST(a.blocks() == static_cast<long>(pattern.size()));
+      }
+}
+
+BOOST_AUTO_TEST_CASE(a_block_outside_the_matrix_is_an_error) {
+  for (const IndexPair& wrong : {IndexPair{-1, 0}, {0, -1}, {3, 0}, {0, 3}, {7, 7}}) {
+    const IndexPair couplings[] = {{0, 1}, wrong};
+    BOOST_CHECK_THROW(BlockSparseMatrix(3, couplings), std::invalid_argument);
+    const BlockSparseMatrix a(3, {couplings, 1});
+    BOOST_CHECK_THROW(a.find(wrong.first, wrong.second), std::out_of_range);
+  }
+  const IndexPair inside[] = {{2, 0}};
+  BOOST_TEST(BlockSparseMatrix(3, inside).blocks() == 5);
+}
+
+BOOST_AUTO_TEST_CASE(products_of_a_block_system_are_the_dense_ones) {
+  for_each_system([](BlockLinearSystem& system, Random& random) {
+    const DenseSystem dense(system);
+    const Vector x = random.vector(system.size()), v = random.vector(system.size());
+    Vector out;
+    system.acceleration(x, v, out);
+    check_equal(out, dense.acceleration(x, v), 1e-13);
+    system.stiffness_times(x, out);
+    check_equal(out, dense.m.llt().solve(dense.k * x), 1e-13);
+    system.damping_times(v, out);
+    const Vector damped = dense.m.llt().solve(dense.d * v);
+    if (damped.isZero(0)) {
+      BOOST_TEST(out.isZero(0));
+    } else {
+      check_equal(out, damped, 1e-13);
+    }
+    BOOST_TEST(system.kinetic_energy(v) == 0.5 * v.dot(dense.m * v), boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(system.potential_energy(x) == 0.5 * x.dot(dense.k * x), boost::test_tools::tolerance(1e-13));
+    BOOST_TEST(&system.linearized(x, v) == &system);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(damping_can_be_changed_later) {
+  Random random(5);
+  BlockLinearSystem system = random_system(6, {}, true, random);
+  system.set_damping({0.4, 0.9});
+  const DenseSystem dense(system);
+  const Vector v = random.vector(system.size());
+  Vector out;
+  system.damping_times(v, out);
+  check_equal(out, dense.m.llt().solve(dense.d * v), 1e-13);
+}
+
+// The promise is on ‖b - Hy‖ in the norm of the inverse block diagonal; rounding adds eps times the
+// condition.
+BOOST_AUTO_TEST_CASE(a_block_system_solves_to_its_tolerance) {
+  for_each_system([](BlockLinearSystem& system, Random& random) {
+    const DenseSystem dense(system);
+    const Vector rhs = random.vector(system.size());
+    for (const double h : {1e-3, 0.3, 20.0}) {
+      const Dense shifted = dense.shifted(h);
+      Dense blocks = Dense::Zero(system.size(), system.size());
+      for (Eigen::Index i = 0; i < system.size(); i += 3)
+        blocks.block<3, 3>(i, i) = shifted.block<3, 3>(i, i);
+      const auto norm = [&](const Vector& r) { return std::sqrt(r.dot(blocks.llt().solve(r))); };
+      const Vector b = dense.m * rhs;
+      for (const double tolerance : {1e-2, 1e-6, 1e-12}) BOOST_TEST_CONTEXT("h " << h << ", " << tolerance) {
+          system.solver = {.tolerance = tolerance};
+          Vector y;
+          const SolveReport report = system.solve_shifted(h, rhs, y);
+          BOOST_TEST((report.status == StepStatus::done));
+          BOOST_TEST(norm(b - shifted * y) <= (tolerance + 1e-13) * norm(b));
+          BOOST_TEST(report.iterations >= 1);
+          BOOST_TEST(report.products == report.iterations * (system.own_damping() ? 2 : 1));
+          if (tolerance == 1e-12) check_equal(y, shifted.llt().solve(b), 1e-9);
+        }
+    }
+  });
+}
+
+BOOST_AUTO_TEST_CASE(iterations_run_out_exactly_when_they_are_needed) {
+  BlockLinearSystem system = chain(60, 1e4);  // h² k0 = 40 000 with h = 1
+  Random random(2);
+  const Vector rhs = random.vector(system.size());
+  Vector y;
+  system.solver.tolerance = 1e-8;
+  const long needed = system.solve_shifted(1, rhs, y).iterations;
+  BOOST_TEST(needed > 20);
+  BOOST_TEST(needed <= 180);  // the number of unknowns
+  system.solver.max_iterations = needed;
+  BOOST_TEST((system.solve_shifted(1, rhs, y).status == StepStatus::done));
+  system.solver.max_iterations = needed - 1;
+  const SolveReport report = system.solve_shifted(1, rhs, y);
+  BOOST_TEST((report.status == StepStatus::not_converged));
+  BOOST_TEST(report.iterations == needed - 1);
+}
+
+// The block-Jacobi preconditioner is the inverse of a block-diagonal H, whatever the masses.
+BOOST_AUTO_TEST_CASE(uncoupled_particles_are_solved_in_one_iteration) {
+  Random random(3);
+  BlockLinearSystem system({1e-6, 1.0, 1e6}, {0.3, 0.1}, {});
+  fill_definite(system.stiffness(), 100, random);
+  system.solver.tolerance = 1e-12;
+  Vector y;
+  const SolveReport report = system.solve_shifted(0.5, random.vector(9), y);
+  BOOST_TEST((report.status == StepStatus::done));
+  BOOST_TEST(report.iterations == 1);
+  const SolveReport nothing = system.solve_shifted(0.5, Vector::Zero(9), y);
+  BOOST_TEST((nothing.status == StepStatus::done));
+  BOOST_TEST(nothing.iterations == 0);
+  BOOST_TEST(y.size() == 9);
+  BOOST_TEST(y.isZero(0));
+}
+
+BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
+  // H = 1 + h² K with K = [[a, -c], [-c, a]]: eigenvalues 1 + h² (a ± c).
+  const IndexPair pair[] = {{0, 1}};
+  BlockLinearSystem system({1, 1}, {}, pair);
+  const double none[3] = {0, 0, 0};
+  const auto set = [&](double a, double c) {
+    BlockSparseMatrix& k = system.stiffness();
+    k.set_zero();
+    for (const int i : {0, 1}) {
+      add_isotropic_and_axial(k.block(k.diagonal(i)), a, 0, none);
+      add_isotropic_and_axial(k.block(k.find(i, 1 - i)), -c, 0, none);
+    }
+  };
+  Random random(4);
+  const Vector rhs = random.vector(6);
+  Vector y;
+  const auto status = [&](double h) { return system.solve_shifted(h, rhs, y).status; };
+
+  set(-1, 0);  // already a diagonal block is negative beyond h = 1
+  BOOST_TEST((status(0.99) == StepStatus::done));
+  BOOST_TEST((status(1.01) == StepStatus::not_positive_definite));
+  set(1, 2);  // diagonal blocks 1 + h², but an eigenvalue 1 - h²
+  BOOST_TEST((status(0.99) == StepStatus::done));
+  BOOST_TEST((status(1.01) == StepStatus::not_positive_definite));
+
+  Vector wrong = rhs;
+  wrong[4] = nan_value;
+  BOOST_TEST((system.solve_shifted(0.5, wrong, y).status == StepStatus::diverged));
+  wrong[4] = inf;
+  BOOST_TEST((system.solve_shifted(0.5, wrong, y).status == StepStatus::diverged));
+}
+
+BOOST_AUTO_TEST_CASE(a_matrix_system_is_its_dense_matrices) {
+  for (const int n : {1, 4, 13})
+    for (const bool damped : {false, true}) BOOST_TEST_CONTEXT("n " << n << ", damped " << damped) {
+        Random random(static_cast<std::uint64_t>(7 * n));
+        const Dense k = random.definite(n), m = random.definite(n);
+        const Dense d = damped ? random.definite(n) : Dense::Zero(n, n);
+        MatrixSystem system(prepare(sparse(k), sparse(m), damped ? sparse(d) : SparseMatrix()));
+        const Vector x = random.vector(n), v = random.vector(n);
+        const auto unmass = [&](const Vector& f) -> Vector { return m.llt().solve(f); };
+        Vector out;
+        system.acceleration(x, v, out);
+        check_equal(out, unmass(-k * x - d * v), 1e-11);
+        system.stiffness_times(x, out);
+        check_equal(out, unmass(k * x), 1e-11);
+        system.damping_times(v, out);
+        BOOST_REQUIRE_EQUAL(out.size(), n);
+        if (damped) check_equal(out, unmass(d * v), 1e-11);
+        if (!damped) BOOST_TEST(out.isZero(0));
+        for (const double h : {0.1, 2.0, 0.1}) {  // a factor is kept only while h is the same
+          const SolveReport report = system.solve_shifted(h, x, out);
+          BOOST_TEST((report.status == StepStatus::done));
+          BOOST_TEST((report.iterations == 0 && report.products == 0));
+          check_equal(out, (m + h * d + h * h * k).llt().solve(m * x), 1e-11);
+        }
+        BOOST_TEST(system.kinetic_energy(v) == 0.5 * v.dot(m * v), boost::test_tools::tolerance(1e-12));
+        BOOST_TEST(system.potential_energy(x) == 0.5 * x.dot(k * x), boost::test_tools::tolerance(1e-12));
+      }
+}
+
+BOOST_AUTO_TEST_CASE(a_matrix_system_reports_an_indefinite_shifted_matrix) {
+  const Dense k = Eigen::Vector3d(2, -4, 1).asDiagonal();
+  MatrixSystem system(prepare(sparse(k)));
+  Vector out;
+  const auto status = [&](double h) { return system.solve_shifted(h, Vector::Ones(3), out).status; };
+  BOOST_TEST((status(0.49) == StepStatus::done));  // 1 - 4h² > 0
+  BOOST_TEST((status(0.51) == StepStatus::not_positive_definite));
+  BOOST_TEST((status(0.49) == StepStatus::done));
+}
+
+// Blocks or matrices, conjugate gradients or Cholesky: one system, one motion.
+BOOST_AUTO_TEST_CASE(every_method_moves_a_block_system_as_its_matrix_system) {
+  Random random(8);
+  BlockLinearSystem blocks = random_system(7, {0.6, 0.05}, true, random);
+  blocks.solver.tolerance = 1e-13;
+  const DenseSystem dense(blocks);
+  MatrixSystem matrices(prepare(sparse(dense.k), sparse(dense.m), sparse(dense.d)));
+  const State<Vector> start{random.vector(blocks.size()), random.vector(blocks.size())};
+  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+      State<Vector> one = start, other = start;
+      for (int i = 0; i < 4; ++i) {
+        BOOST_TEST((make_stepper(method.name)->step(blocks, 0.003, one) == StepStatus::done));
+        BOOST_TEST((make_stepper(method.name)->step(matrices, 0.003, other) == StepStatus::done));
+      }
+      check_equal(one.x, other.x, 1e-11);
+      check_equal(one.v, other.v, 1e-11);
+    }
+}
+
+// 1 + hC and 1 - hC' solve each other's steps: backward Euler with -h undoes forward Euler with h.
+BOOST_AUTO_TEST_CASE(implicit_euler_backwards_undoes_explicit_euler) {
+  for (const RayleighDamping& damping : dampings) {
+    Random random(9);
+    BlockLinearSystem system = random_system(5, damping, true, random);
+    for (double& r : std::span(system.own_damping()->block(0), 9 * system.own_damping()->blocks())) r *= 1e-3;
+    system.solver.tolerance = 1e-14;
+    const double h = 1e-3;
+    const State<Vector> start{random.vector(system.size()), random.vector(system.size())};
+    State<Vector> state = start;
+    BOOST_TEST((make_stepper("explicit-euler")->step(system, h, state) == StepStatus::done));
+    BOOST_TEST((state.v - start.v).norm() > 1e-3);
+    BOOST_TEST((make_stepper("implicit-euler")->step(system, -h, state) == StepStatus::done));
+    check_equal(state.x, start.x, 1e-12);
+    check_equal(state.v, start.v, 1e-12);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(prepare_keeps_what_is_right) {
+  Random random(21);
+  const Dense k = random.definite(5), m = random.definite(5), d = random.definite(5);
+  const StructuralMatrices s = prepare(sparse(k), sparse(m), sparse(d));
+  BOOST_TEST((Dense(s.stiffness).isApprox(k, 1e-15) && Dense(s.mass).isApprox(m, 1e-15)));
+  BOOST_TEST((Dense(s.damping).isApprox(d, 1e-15) && s.has_damping()));
+  BOOST_TEST(s.condensed == 0);
+  const StructuralMatrices plain = prepare(sparse(-k));  // an indefinite K is a structure that buckles
+  BOOST_TEST((Dense(plain.mass) == Dense::Identity(5, 5)));
+  BOOST_TEST(!plain.has_damping());
+  BOOST_TEST(is_diagonal(plain.mass));
+  BOOST_TEST(!is_diagonal(s.mass));
+}
+
+BOOST_AUTO_TEST_CASE(asymmetry_is_averaged_away_up_to_a_tolerance_and_refused_above) {
+  Random random(22);
+  const Dense good = random.definite(4);
+  for (const double scale : {1e-30, 1.0, 1e30}) {  // the tolerance is relative
+    const double largest = scale * good.cwiseAbs().maxCoeff();
+    const auto with_asymmetry = [&](double a) {
+      Dense wrong = scale * good;
+      wrong(1, 3) += a * largest;
+      return sparse(wrong);
+    };
+    const SparseMatrix none, unit = sparse(Dense::Identity(4, 4));
+    const Dense tolerated = prepare(with_asymmetry(0.9e-10)).stiffness;
+    BOOST_TEST((tolerated == tolerated.transpose()));
+    BOOST_TEST((tolerated(1, 3) - scale * good(1, 3)) / largest == 0.45e-10,
+               boost::test_tools::tolerance(1e-4));
+    BOOST_TEST(prepare(unit, with_asymmetry(0.9e-10)).size() == 4);
+    expect_refused([&] { prepare(with_asymmetry(1.1e-10)); }, "the stiffness matrix is not symmetric");
+    expect_refused([&] { prepare(unit, with_asymmetry(1.1e-10)); }, "the mass matrix is not symmetric");
+    expect_refused([&] { prepare(unit, none, with_asymmetry(-1.1e-10)); },
+                   "the damping matrix is not symmetric");
+  }
+}
+
+BOOST_AUTO_TEST_CASE(matrices_that_no_structure_has_are_refused_by_name) {
+  const auto one = [](int rows, int columns) {
+    SparseMatrix a(rows, columns);
+    for (int i = 0; i < std::min(rows, columns); ++i) a.insert(i, i) = 1;
+    return a;
+  };
+  const SparseMatrix none;
+  expect_refused([&] { prepare(none); }, "the stiffness matrix is empty");
+  expect_refused([&] { prepare(one(3, 4)); }, "the stiffness matrix is 3 x 4");
+  expect_refused([&] { prepare(one(3, 3), one(4, 4)); }, "the mass matrix is 4 x 4");
+  expect_refused([&] { prepare(one(3, 3), one(3, 2)); }, "the mass matrix is 3 x 2");
+  expect_refused([&] { prepare(one(3, 3), none, one(2, 2)); }, "the damping matrix is 2 x 2");
+  for (const double bad : {nan_value, inf, -inf}) {
+    SparseMatrix wrong = one(3, 3);
+    wrong.coeffRef(2, 2) = bad;
+    expect_refused([&] { prepare(wrong); }, "the stiffness matrix has an entry that is not finite");
+    expect_refused([&] { prepare(one(3, 3), wrong); }, "the mass matrix has an entry that is not finite");
+    expect_refused([&] { prepare(one(3, 3), none, wrong); },
+                   "the damping matrix has an entry that is not finite");
+  }
+  SparseMatrix negative = one(3, 3);
+  negative.coeffRef(1, 1) = -1e-9;
+  expect_refused([&] { prepare(one(3, 3), negative); }, "the mass of unknown 2 is -1e-09");
+  const Dense indefinite{{1, 2}, {2, 1}}, singular{{1, 1}, {1, 1}}, hollow{{0, 1}, {1, 2}};
+  for (const Dense& m : {indefinite, singular, hollow})
+    expect_refused([&] { prepare(one(2, 2), sparse(m)); }, "the mass matrix is not positive definite");
+  expect_refused([&] { prepare(one(2, 2), sparse(Dense::Zero(2, 2))); }, "the mass matrix is zero");
+}
+
+// Finite λ of K u = λ M u are 1/μ for the positive μ of L⁻¹ M L⁻ᵀ, K = LLᵀ: nothing is condensed there.
+BOOST_AUTO_TEST_CASE(condensation_keeps_the_finite_eigenvalues_and_the_static_answer) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int n = 12, massless = 1 + static_cast<int>(seed % 6);
+      const Dense k = random.definite(n);
+      Dense m = random.definite(n);
+      std::set<int> without;
+      while (static_cast<int>(without.size()) < massless) without.insert(random.index(n));
+      for (const int i : without) m.row(i).setZero(), m.col(i).setZero();
+
+      // An explicit zero in a massless row of the file is no mass.
+      SparseMatrix sparse_m = sparse(m);
+      sparse_m.coeffRef(*without.begin(), *without.begin()) = 0;
+      const StructuralMatrices s = prepare(sparse(k), sparse_m);
+      BOOST_TEST(s.condensed == massless);
+      BOOST_REQUIRE_EQUAL(s.size(), n - massless);
+      BOOST_REQUIRE_EQUAL(s.mass.rows(), n - massless);
+
+      const Eigen::LLT<Dense> factor(k);
+      const Dense half = factor.matrixL().solve(m);
+      const Dense inverse = factor.matrixL().solve(Dense(half.transpose()));
+      const Vector mu = Eigen::SelfAdjointEigenSolver<Dense>(inverse).eigenvalues().tail(n - massless);
+      const Vector expected = mu.cwiseInverse().reverse();
+      const Vector found =
+          Eigen::GeneralizedSelfAdjointEigenSolver<Dense>(Dense(s.stiffness), Dense(s.mass)).eigenvalues();
+      // Both sides solve with K and M, whose condition numbers are below 1e4.
+      for (Eigen::Index i = 0; i < found.size(); ++i)
+        BOOST_TEST(found[i] == expected[i], boost::test_tools::tolerance(1e-9));
+
+      Vector load = Vector::Zero(n), heavy_load(n - massless), answer(n - massless);
+      Eigen::Index a = 0;
+      for (int i = 0; i < n; ++i)
+        if (!without.contains(i)) load[i] = heavy_load[a++] = random(-1, 1);
+      const Vector full = factor.solve(load);
+      a = 0;
+      for (int i = 0; i < n; ++i)
+        if (!without.contains(i)) answer[a++] = full[i];
+      check_equal(Dense(s.stiffness).llt().solve(heavy_load), answer, 1e-10);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(condensation_keeps_the_damping_of_what_has_mass) {
+  Random random(31);
+  const Dense k = random.definite(4), m = Eigen::Vector4d(2, 0, 3, 0).asDiagonal();
+  Dense d = Dense::Zero(4, 4);
+  d(0, 0) = 5, d(0, 2) = d(2, 0) = 1, d(2, 2) = 7;
+  const StructuralMatrices s = prepare(sparse(k), sparse(m), sparse(d));
+  BOOST_TEST((Dense(s.damping) == Dense{{5, 1}, {1, 7}}));
+  BOOST_TEST((Dense(s.mass) == Dense{{2, 0}, {0, 3}}));
+
+  Dense wrong = d;
+  wrong(3, 3) = 1;
+  expect_refused([&] { prepare(sparse(k), sparse(m), sparse(wrong)); }, "unknown 4 has damping but no mass");
+  wrong = d;
+  wrong(0, 1) = wrong(1, 0) = 1;
+  expect_refused([&] { prepare(sparse(k), sparse(m), sparse(wrong)); }, "unknown 2 has damping but no mass");
+}
+
+// Massless unknowns that nothing holds: with a K_bb that is singular but for rounding, K_bb⁻¹ would be noise.
+BOOST_AUTO_TEST_CASE(massless_unknowns_that_nothing_holds_are_refused) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int n = 3 + random.index(20);
+      // A free chain of massless particles beside one heavy particle on a spring.
+      Dense k = Dense::Zero(n, n), m = Dense::Zero(n, n);
+      k(0, 0) = m(0, 0) = 1;
+      for (int i = 1; i + 1 < n; ++i) {
+        const double spring = std::pow(10, random(-2, 2));
+        k(i, i) += spring, k(i + 1, i + 1) += spring;
+        k(i, i + 1) = k(i + 1, i) = -spring;
+      }
+      const std::string words =
+          "the stiffness between the " + std::to_string(n - 1) + " massless unknowns is not";
+      expect_refused([&] { prepare(sparse(k), sparse(m)); }, words);
+      const double scale = std::pow(10, random(-30, 30));
+      expect_refused([&] { prepare(sparse(scale * k), sparse(m)); }, words);
+      k(n - 1, n - 1) += 1e-6;  // held, if weakly
+      BOOST_TEST(prepare(sparse(k), sparse(m)).condensed == n - 1);
+    }
+  const Dense k{{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}, m = Eigen::Vector3d(1, 0, 1).asDiagonal();
+  expect_refused([&] { prepare(sparse(k), sparse(m)); }, "the stiffness between the 1 massless unknowns");
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -48,7 +48,9 @@ StepChoice choose_step(Subject& subject, const CommonOptions& common, const Simu
   if (!k0.converged) return {std::nullopt, "k0 did not converge"};
   MethodLimits limits = method_limits(options.method, k0, subject.damping(), options.safety);
   if (limits.status == LimitStatus::none)
-    return {std::nullopt, "no positive step of " + options.method + " is stable with this damping"};
+    return {std::nullopt, "no positive step of " + options.method +
+                              " is stable with this damping; choose another method (see springstab limits) or "
+                              "--damping designed"};
   if (limits.status == LimitStatus::unknown)
     return {std::nullopt,
             "the stable step of " + options.method + " is not known for this damping; give --step"};

@@ -58,7 +58,8 @@ if (has_line) {
 }
 
 if (over_y < 0) {
-    set label 2 'over-stable' at first over_x, over_y center front font ',15'
+    set style textbox opaque fillcolor rgb over_colour noborder
+    set label 2 'over-stable' at first over_x, over_y center front boxed font ',15'
 }
 
 plot for [i = 1:has_over] data . '_pieces.csv' using 1:2:3 with filledcurves fillcolor rgb over_colour \

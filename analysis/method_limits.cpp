@@ -52,6 +52,7 @@ MethodLimits method_limits(std::string_view method, const StiffestMode& k0, cons
                            double safety) {
   const StabilityRegion& region = stability_region(method);
   MethodLimits limits;
+  if (!k0.converged) return limits;
   if (damping.kind == DampingModel::Kind::general) {
     if (!region.constants().covers_quadrant || !damping.semidefinite || k0.indefinite) return limits;
     limits.status = LimitStatus::unlimited;

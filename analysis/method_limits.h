@@ -46,7 +46,7 @@ struct MethodLimits {
 
 /// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method
 /// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);
-/// the others are unknown. `safety` >= 1 acts on the stiffness.
+/// the others are unknown, as is everything when k0 did not converge. `safety` >= 1 acts on the stiffness.
 MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
                            double safety);
 

@@ -166,8 +166,7 @@ BivariatePolynomial operator*(const BivariatePolynomial& p, const BivariatePolyn
 }
 
 bool operator==(const BivariatePolynomial& p, const BivariatePolynomial& q) {
-  return p.value_.rows() == q.value_.rows() && p.value_.cols() == q.value_.cols() &&
-         (p.value_ == q.value_).all();
+  return (p + -q).leading().first < 0;
 }
 
 std::pair<Eigen::Index, Eigen::Index> BivariatePolynomial::leading() const {

@@ -2,6 +2,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -43,6 +44,22 @@ std::vector<StabilityRegion::Piece> StabilityRegion::pieces_of(const Window& win
   constexpr int cells = 400;
   std::vector<double> grid;
   for (int i = 0; i <= cells; ++i) grid.push_back(window.x_min + (window.x_max - window.x_min) * i / cells);
+
+  // What is narrower than a cell: between the X where the whole region's columns change, or where the
+  // boundary crosses the lower or the upper edge.
+  std::vector<double> changes{window.x_min, window.x_max};
+  const auto add = [&](double x) {
+    if (x > window.x_min && x < window.x_max) changes.push_back(x);
+  };
+  for (const Piece& piece : all_pieces_) add(piece.left), add(piece.right);
+  for (const double y : {window.y_min, window.y_max})
+    for (const StableInterval& interval : stable_intervals({{{0, 1}}, {{y}}}, window.x_min, window.x_max))
+      add(interval.lower), add(interval.upper);
+  std::sort(changes.begin(), changes.end());
+  for (std::size_t i = 0; i + 1 < changes.size(); ++i)
+    if (changes[i + 1] - changes[i] > 1e-12 * std::max(1.0, std::abs(changes[i])))
+      grid.push_back(between(changes[i], changes[i + 1]));
+  std::sort(grid.begin(), grid.end());
   return smooth_pieces(grid, window.y_min, window.y_max);
 }
 
@@ -136,7 +153,7 @@ void StabilityRegion::append_vertical_arcs(const std::vector<Piece>& all, const 
     }
     for (const auto& parts : {difference(left, right), difference(right, left)})
       for (const auto& [lower, upper] : parts) {
-        if (upper - lower < 1e-4) continue;  // the inset of a square-root end
+        if (upper - lower < 1e-3) continue;  // the inset of a square- or cube-root end
         const double y = between(lower, upper);
         const auto violation = [&](std::size_t i) { return std::abs(jury_[i](x, y)); };
         std::size_t binding = 0;
@@ -157,6 +174,7 @@ Window StabilityRegion::natural_window(double margin) const {
       box.y_max = std::max(box.y_max, c.intervals.back().upper);
     }
   }
+  box.y_max = std::max(box.y_max, constants_.y_max);  // the apex lies between two samples
   if (!std::isfinite(box.y_max - box.y_min) || std::max(-box.x_min, box.x_max) > 100) return {-8, 8, -8, 8};
   const double dx = margin * (box.x_max - box.x_min), dy = margin * (box.y_max - box.y_min);
   return {box.x_min - dx, box.x_max + dx, box.y_min - dy, box.y_max + dy};

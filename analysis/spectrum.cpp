@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 
 namespace springstab {
 namespace {
@@ -52,6 +53,8 @@ StiffestMode dense_spectrum(const LinearOperator& s) {
     s.apply(Eigen::VectorXd::Unit(s.size, j), column);
     matrix.col(j) = column;
   }
+  if (!matrix.allFinite())
+    throw std::invalid_argument("the mass-scaled stiffness is not finite, expected finite matrices");
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (matrix + matrix.transpose()));
   StiffestMode mode;
   mode.converged = solver.info() == Eigen::Success;
@@ -59,7 +62,7 @@ StiffestMode dense_spectrum(const LinearOperator& s) {
   mode.value = solver.eigenvalues().tail<1>()[0];
   mode.smallest = solver.eigenvalues()[0];
   s.apply(solver.eigenvectors().rightCols<1>(), column);
-  mode.residual = (column - mode.value * solver.eigenvectors().rightCols<1>()).norm();
+  mode.residual = (column - mode.value * solver.eigenvectors().rightCols<1>()).stableNorm();
   return mode;
 }
 
@@ -90,7 +93,7 @@ bool is_below(const StructuralMatrices& s, double sigma) {
   const double forming_error =
       8 * unit_roundoff * (std::abs(sigma) * largest_row_sum(mass) + largest_row_sum(stiffness));
   const double largest_diagonal = Eigen::VectorXd(a.diagonal()).maxCoeff();
-  if (!(largest_diagonal > 0)) return false;
+  if (!std::isfinite(forming_error) || !(largest_diagonal > 0)) return false;
 
   SparseMatrix identity(s.size(), s.size());
   identity.setIdentity();

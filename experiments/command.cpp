@@ -102,6 +102,9 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
       ->type_name("[s]");
   command->add_option("--safety", o.safety, "factor F >= 1 on the stiffness for the recommended step")
       ->capture_default_str();
+  command->add_option("--relinearize", o.relinearize, "of linearized methods: time between linearizations")
+      ->type_name("[s]")
+      ->capture_default_str();
   command->add_option("--damping", damping, "own, or designed: alpha fitted to the step")
       ->check(CLI::IsMember({"own", "designed"}))
       ->capture_default_str();
@@ -120,6 +123,8 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
       "The step is shortened so that a whole number of steps ends at the duration. Units are SI. Matrices "
       "start from a\n"
       "random displacement of unit M-norm (--seed) at rest, without force.\n"
+      "Unless --step is given, a run that diverges goes back one step and on with a step for the stiffness "
+      "it has there.\n"
       "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
       "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
       "--output drape");

@@ -61,6 +61,7 @@ struct SimulateOptions {
   std::optional<double> step;      // [s]
   std::optional<double> max_step;  // [s]
   double safety = 1.5;
+  double relinearize = 0.01;  // h_m of the linearized methods [s]
   bool designed_damping = false;
   std::string output;  // folder, empty for none
   std::string format = "obj";

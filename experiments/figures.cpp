@@ -34,6 +34,7 @@ std::vector<RegionFigure> region_figures() {
       {"explicit-euler", "1"}, {"rk4", "2"}, {"implicit-euler", "3"}};
   std::vector<RegionFigure> figures;
   for (const MethodInfo& info : all_methods()) {
+    if (info.linearized) continue;  // the region of the method inside
     RegionFigure figure{"region_" + std::string(info.name), "", std::string(info.name)};
     for (const auto& [method, number] : numbered)
       if (method == info.name)

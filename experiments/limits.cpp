@@ -109,7 +109,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
   if (!options.method.empty()) find_method(options.method);
   Subject subject(options.input);
-  const StructuralMatrices structure = subject.structure();
+  const StructuralMatrices structure = subject.structure(subject.initial_state(common.seed));
   const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
   if (subject.matrices() && k0.indefinite)
     throw InputError(
@@ -150,7 +150,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     print(structure, k0, damping, options.safety);
     for (const Row& row : rows) print(row.method, row.limits);
   } else {
-    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products, k0.upper_bound);
+    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products,
+                      k0.upper_bound);
   }
   return status;
 }

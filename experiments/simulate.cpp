@@ -8,6 +8,7 @@
 #include "experiments/experiments.h"
 #include "experiments/frames.h"
 #include "experiments/output.h"
+#include "experiments/step_chooser.h"
 #include "solvers/counting.h"
 #include "solvers/io/input_error.h"
 #include "solvers/simulation.h"
@@ -35,30 +36,6 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-// The step to use and, with designed damping, its alpha. No step where there is none or none is known.
-struct StepChoice {
-  std::optional<double> step;
-  std::string reason;  // where there is no step
-};
-
-StepChoice choose_step(Subject& subject, const CommonOptions& common, const SimulateOptions& options) {
-  if (options.step) return {*options.step, ""};
-  const StructuralMatrices structure = subject.structure();
-  const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
-  if (!k0.converged) return {std::nullopt, "k0 did not converge"};
-  MethodLimits limits = method_limits(options.method, k0, subject.damping(), options.safety);
-  if (limits.status == LimitStatus::none)
-    return {std::nullopt, "no positive step of " + options.method +
-                              " is stable with this damping; choose another method (see springstab limits) or "
-                              "--damping designed"};
-  if (limits.status == LimitStatus::unknown)
-    return {std::nullopt,
-            "the stable step of " + options.method + " is not known for this damping; give --step"};
-  double step = limits.recommended.value_or(0.01);
-  if (options.max_step && (step > *options.max_step || !limits.recommended)) step = *options.max_step;
-  return {step, ""};
-}
-
 void check(const SimulateOptions& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
     if (!(value > 0 && std::isfinite(value)))
@@ -67,6 +44,7 @@ void check(const SimulateOptions& options) {
   positive("--duration", options.duration, " of seconds");
   if (options.step) positive("--step", *options.step, " of seconds");
   if (options.max_step) positive("--max-step", *options.max_step, " of seconds");
+  positive("--relinearize", options.relinearize, " of seconds");
   positive("--cg-tolerance", options.cg_tolerance, "");
   if (options.frames < 1) throw InputError("--frames", 0, text("is %d, expected at least 1", options.frames));
 }
@@ -74,8 +52,7 @@ void check(const SimulateOptions& options) {
 // Writes evenly spaced frames of a scene, or rows of a CSV file for matrices.
 class Recorder {
  public:
-  Recorder(Subject& subject, const SimulateOptions& options, long steps, double h)
-      : subject_(subject), options_(options), steps_(steps), h_(h) {
+  Recorder(Subject& subject, const SimulateOptions& options) : subject_(subject), options_(options) {
     if (options.output.empty()) return;
     make_folder(options.output);
     if (subject.scene()) return;
@@ -85,19 +62,18 @@ class Recorder {
     csv_->stream() << '\n';
   }
 
-  void record(long step, const State<Vector>& state) {
-    // frame f of the last step s where floor(f · steps / frames) = s
-    if (options_.output.empty() || step < next_step()) return;
+  void record(double t, const State<Vector>& state) {
+    if (options_.output.empty() || t < next_time()) return;
     if (Scene* scene = subject_.scene()) {
-      write_frame(options_.output, options_.format, frame_, scene->positions(state.x), subject_.faces());
+      write_frame(options_.output, options_.format, written_, scene->positions(state.x), subject_.faces());
     } else {
-      csv_->stream() << static_cast<double>(step) * h_ << ',' << subject_.system().kinetic_energy(state.v)
-                     << ',' << subject_.system().potential_energy(state.x);
+      csv_->stream() << t << ',' << subject_.system().kinetic_energy(state.v) << ','
+                     << subject_.system().potential_energy(state.x);
       for (double x : state.x) csv_->stream() << ',' << x;
       csv_->stream() << '\n';
     }
-    while (next_step() <= step && frame_ <= options_.frames) ++frame_;
     ++written_;
+    while (next_time() <= t && due_ <= options_.frames) ++due_;
   }
 
   void finish() {
@@ -107,14 +83,13 @@ class Recorder {
   int written() const { return written_; }
 
  private:
-  long next_step() const { return static_cast<long>(static_cast<double>(steps_) * frame_ / options_.frames); }
+  // A hair early: the time of a step is a rounded sum.
+  double next_time() const { return options_.duration * due_ / options_.frames * (1 - 1e-9); }
 
   Subject& subject_;
   const SimulateOptions& options_;
-  long steps_;
-  double h_;
   std::optional<OutputFile> csv_;
-  int frame_ = 0, written_ = 0;
+  int due_ = 0, written_ = 0;
 };
 
 const char* outcome(StepStatus status) {
@@ -138,41 +113,37 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   find_method(options.method);
   Subject subject(options.input);
   if (options.designed_damping) subject.design_damping();
-  const StepChoice choice = choose_step(subject, common, options);
-  if (!choice.step) {
+  StepChooser chooser(subject, common, options);
+  const std::optional<StepPlan> plan = chooser.first_plan();
+  if (!plan) {
     if (common.json) {
-      std::cout << Json{{"method", options.method}, {"step", nullptr}, {"status", choice.reason}}.dump(2)
+      std::cout << Json{{"method", options.method}, {"step", nullptr}, {"status", chooser.reason()}}.dump(2)
                 << '\n';
     } else {
-      std::cout << choice.reason << '\n';
+      std::cout << chooser.reason() << '\n';
     }
     return no_answer;
   }
-  const double count = std::max(1.0, std::ceil(options.duration / *choice.step * (1 - 1e-12)));
-  if (count > 1e15)
-    throw InputError("--step", 0, text("would need %.3g steps, expected at most 1e15", count));
-  const long steps = static_cast<long>(count);
-  const double h = options.duration / count;
-  const DampingModel damping = subject.damping();
-  if (damping.kind == DampingModel::Kind::designed)
-    subject.set_alpha(designed_alpha(stability_region(options.method), h, damping.d0));
+  const double h = plan->h;
   if (Scene* scene = subject.scene()) scene->solver().tolerance = options.cg_tolerance;
 
   State<Vector> state = subject.initial_state(common.seed);
   CountingSystem system(subject.system());
-  const auto stepper = make_stepper(options.method);
-  const EnergyWatch watch = subject.energy_watch(state);
+  const auto stepper = make_stepper(options.method, plan->steps_per_linearization);
+  const EnergyWatch watch = chooser.watch(state);
   const double energy_before = system.kinetic_energy(state.v) + system.potential_energy(state.x);
-  Recorder recorder(subject, options, steps, h);
+  Recorder recorder(subject, options);
   Progress progress("simulating", common.quiet);
   const StopOnInterrupt interrupt_guard;
   const double cpu_start = cpu_seconds();
-  const SimulationResult result =
-      simulate(system, *stepper, h, steps, watch, state, [&](long step, const State<Vector>& s) {
-        recorder.record(step, s);
-        if (step % 64 == 0) progress.update(static_cast<double>(step) / count);
+  const SimulationResult result = simulate(
+      system, *stepper, h, plan->steps, watch, state,
+      [&](const SimulationResult& so_far, const State<Vector>& s) {
+        recorder.record(so_far.time, s);
+        if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
         return stop_requested == 0;
-      });
+      },
+      chooser.policy());
   const double cpu = cpu_seconds() - cpu_start;
   recorder.finish();
 
@@ -184,15 +155,16 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
               {"step", h},
               {"steps", result.steps},
               {"diverged", diverged},
-              {"diverged_at", diverged ? number(static_cast<double>(result.steps + 1) * h) : Json()},
+              {"diverged_at", diverged ? number(result.time + chooser.present_step()) : Json()},
               {"cpu_seconds", cpu},
               {"counts",
                {{"force_evaluations", counts.force_evaluations},
                 {"hessian_assemblies", counts.hessian_assemblies},
                 {"block_products", counts.block_products},
                 {"cg_iterations", counts.cg_iterations},
-                {"relinearizations", 0},
-                {"rollbacks", 0}}},
+                {"relinearizations", find_method(options.method).linearized ? counts.hessian_assemblies : 0},
+                {"rollbacks", chooser.rollbacks()},
+                {"halved_steps", chooser.halved_steps()}}},
               {"energy", {{"initial", number(energy_before)}, {"final", number(energy_after)}}},
               {"frames", recorder.written()}};
   report["damping"] = {{"d0", number(subject.damping().d0)}, {"alpha", number(subject.damping().alpha)}};
@@ -209,13 +181,19 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     if (stop_requested) {
       std::cout << text("interrupted at t = %.6g s\n", result.time);
     } else if (diverged) {
-      std::cout << text("diverged at t = %.6g s\n", static_cast<double>(result.steps + 1) * h);
+      std::cout << text("diverged at t = %.6g s\n", result.time + chooser.present_step());
     } else if (result.status != StepStatus::done) {
       std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
                         outcome(result.status));
     } else {
       std::cout << "done\n";
     }
+    if (chooser.rollbacks() > 0)
+      std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s\n",
+                        chooser.rollbacks(), chooser.present_step());
+    if (chooser.halved_steps() > 0)
+      std::cout << text("%ld steps were halved because 1 + hD' + h²K' was not positive definite\n",
+                        chooser.halved_steps());
     std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy_before, energy_after);
     if (report.contains("last_particle")) {
       const Json& p = report["last_particle"]["position"];

@@ -24,4 +24,16 @@ struct Oscillator {
   const Oscillator& linearized(const V&, const V&) const { return *this; }
 };
 
+/// The type that linearizing a system over V gives.
+template <class V>
+struct LinearSystemTrait {
+  using type = const Oscillator<V>;
+};
+template <>
+struct LinearSystemTrait<Vector> {
+  using type = LinearSystem;
+};
+template <class V>
+using LinearSystemOf = typename LinearSystemTrait<V>::type;
+
 }  // namespace springstab

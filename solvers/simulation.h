@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "solvers/stepper.h"
 #include "solvers/system.h"
@@ -18,6 +19,7 @@ struct EnergyWatch {
   double initial_energy = 0;  // E0 [J]
   double gravity = 0;         // g [m/s²]
   double mass = 0;            // m of all that moves [kg]
+  double start_time = 0;      // when E0 was taken [s]
   double slack = 1e3;
 
   bool diverged(double kinetic_energy, double t) const;
@@ -25,15 +27,31 @@ struct EnergyWatch {
 
 struct SimulationResult {
   long steps = 0;                        // completed
-  double time = 0;                       // steps · h [s]
+  double time = 0;                       // the sum of their h [s]
   StepStatus status = StepStatus::done;  // of the last step; diverged also when the watch said so
+  long failures = 0;                     // steps that were discarded and taken again otherwise
 };
 
-/// Takes `steps` steps of h from `state`. `observe(step, state)` is called for step 0 and after every
-/// completed step, and stops the run by returning false. After anything but `done` the state is the last good
-/// one: not finite or not plausible states never reach the observer.
-SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, const EnergyWatch& watch,
-                          State<Vector>& state,
-                          const std::function<bool(long step, const State<Vector>&)>& observe = {});
+/// Sees every good state, the first included; returning false stops the run.
+using Observer = std::function<bool(const SimulationResult& so_far, const State<Vector>& state)>;
+
+/// How to go on after a failed step, from the last good state.
+struct NewPlan {
+  double h;
+  long steps;
+  bool to_the_end;  // replaces the rest of the run; otherwise the failed step only, and the old h follows
+  std::optional<EnergyWatch> watch = {};  // from now on, where the run goes on with what energy it has
+};
+
+/// Asked after a failed step (so_far.status says why) with the last good state. It may also change the
+/// system, as when new damping goes with the new step. Nothing means to give up.
+using StepPolicy = std::function<std::optional<NewPlan>(const SimulationResult& so_far,
+                                                        const State<Vector>& state, double h)>;
+
+/// Takes `steps` steps of h from `state`. After anything but `done` the state is the last good one: neither
+/// non-finite nor implausible states reach the observer. With a policy a failed step is discarded (paper
+/// §4, 2.3), the method forgets what it had linearized, and the run goes on with the new plan.
+SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, EnergyWatch watch,
+                          State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {});
 
 }  // namespace springstab

@@ -17,6 +17,8 @@ class Stepper {
   virtual ~Stepper() = default;
   /// Advances the state by h, or says why it did not and leaves the state as it was.
   virtual StepStatus step(System& system, double h, State<Vector>& state) = 0;
+  /// Drops what is kept from step to step (a linearization), as after going back to an earlier state.
+  virtual void forget() = 0;
 };
 
 /// All methods, in the order of the list.
@@ -25,7 +27,8 @@ std::span<const MethodInfo> all_methods();
 /// The method of that name; throws std::invalid_argument that lists the known names.
 const MethodInfo& find_method(std::string_view name);
 
-/// A stepper for the method of that name; throws like find_method.
-std::unique_ptr<Stepper> make_stepper(std::string_view name);
+/// A stepper for the method of that name; throws like find_method. In a linearized method one linearization
+/// serves `steps_per_linearization` >= 1 steps; the others have no use for the number.
+std::unique_ptr<Stepper> make_stepper(std::string_view name, long steps_per_linearization = 1);
 
 }  // namespace springstab

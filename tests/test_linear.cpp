@@ -493,6 +493,12 @@ BOOST_AUTO_TEST_CASE(matrices_that_no_structure_has_are_refused_by_name) {
   for (const Dense& m : {indefinite, singular, hollow})
     expect_refused([&] { prepare(one(2, 2), sparse(m)); }, "the mass matrix is not positive definite");
   expect_refused([&] { prepare(one(2, 2), sparse(Dense::Zero(2, 2))); }, "the mass matrix is zero");
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {  // singular but for rounding
+    Random random(seed);
+    const Dense a = random.matrix(6, 5);
+    expect_refused([&] { prepare(one(6, 6), sparse(a * a.transpose())); },
+                   "the mass matrix is not positive definite");
+  }
 }
 
 // Finite λ of K u = λ M u are 1/μ for the positive μ of L⁻¹ M L⁻ᵀ, K = LLᵀ: nothing is condensed there.

@@ -182,10 +182,9 @@ EnergyWatch Subject::energy_watch(const State<Vector>& start) {
   return watch;
 }
 
-StructuralMatrices Subject::structure() {
+StructuralMatrices Subject::structure(const State<Vector>& state) {
   if (matrices_) return matrices_->matrices();
-  const State<Vector> start = initial_state(0);
-  const BlockLinearSystem& linear = scene_->linearized(start.x, start.v);
+  const BlockLinearSystem& linear = scene_->linearized(state.x, state.v);
   StructuralMatrices s;
   s.stiffness = linear.stiffness().to_sparse();
   Vector mass(scene_->size());

@@ -40,8 +40,8 @@ class Subject {
   State<Vector> initial_state(std::uint64_t seed);
   EnergyWatch energy_watch(const State<Vector>& start);
 
-  /// K and M at the start, and what kind of damping there is.
-  StructuralMatrices structure();
+  /// K and M at a state (matrices are the same at all), and what kind of damping there is.
+  StructuralMatrices structure(const State<Vector>& state);
   DampingModel damping();
 
   /// Leaves alpha to the design, as "alpha": "designed" does. Throws InputError for matrices.

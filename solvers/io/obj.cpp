@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -17,11 +18,11 @@ using Words = std::vector<std::string_view>;
 /// What the format has and a polygon mesh does not need. `call` and `csh` are not among them: they bring in
 /// other files, and skipping those would silently lose geometry.
 constexpr auto skipped_keywords = std::to_array<std::string_view>(
-    {"vt",        "vn",       "vp",    "cstype", "deg",    "bmat",   "step",   "p",
-     "l",         "curv",     "curv2", "surf",   "parm",   "trim",   "hole",   "scrv",
-     "sp",        "end",      "con",   "g",      "s",      "mg",     "o",      "bevel",
-     "c_interp",  "d_interp", "lod",   "usemap", "usemtl", "mtllib", "maplib", "shadow_obj",
-     "trace_obj", "ctech",    "stech", "bsp",    "bzp",    "cdc",    "cdp",    "res"});
+    {"vn",       "vp",    "cstype", "deg",    "bmat",   "step",   "p",          "l",
+     "curv",     "curv2", "surf",   "parm",   "trim",   "hole",   "scrv",       "sp",
+     "end",      "con",   "g",      "s",      "mg",     "o",      "bevel",      "c_interp",
+     "d_interp", "lod",   "usemap", "usemtl", "mtllib", "maplib", "shadow_obj", "trace_obj",
+     "ctech",    "stech", "bsp",    "bzp",    "cdc",    "cdp",    "res"});
 
 /// Collects the words of the next statement: one line, or several where a line ends in a backslash.
 /// Returns where it begins; line 0 once the file has ended.
@@ -50,38 +51,69 @@ Eigen::Vector3d parse_vertex(const Words& words, const Location& at) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-[[noreturn]] void fail_index(long long index, const std::string& expected, const Location& at) {
-  at.fail("vertex index " + std::to_string(index) + " is out of range, expected " + expected);
+[[noreturn]] void fail_index(const std::string& kind, long long index, const std::string& expected,
+                             const Location& at) {
+  at.fail(kind + " index " + std::to_string(index) + " is out of range, expected " + expected);
 }
 
-/// The vertex, from 0, of a corner i, i/t, i/t/n or i//n. A negative i counts back from the last vertex so
-/// far; a positive one may point ahead, so its upper bound is left to check_indices.
-int parse_corner(std::string_view word, std::size_t vertices_so_far, const Location& at) {
+/// `vt` u, and v and a depth that default to 0; the depth is not used.
+Eigen::Vector2d parse_texture(const Words& words, const Location& at) {
+  std::array<double, 3> numbers{};
+  const std::size_t count = words.size() - 1;
+  if (count < 1 || count > 3)
+    at.fail("texture coordinates with " + std::to_string(count) + " numbers, expected u, u v or u v w");
+  for (std::size_t i = 0; i < count; ++i) numbers[i] = at.real(words[i + 1]);
+  return {numbers[0], numbers[1]};
+}
+
+/// The place, from 0, that an index names. A negative one counts back from the last so far; a positive one
+/// may point ahead, so its upper bound is left to check_indices.
+int place(long long index, const std::string& kind, const std::string& things, std::size_t so_far,
+          const Location& at) {
+  const auto last = static_cast<long long>(so_far);
+  if (index == 0 || index > std::numeric_limits<int>::max())
+    fail_index(kind, index, "an index from 1 (or from -1 back)", at);
+  if (index < -last)
+    fail_index(kind, index, "at least -" + std::to_string(last) + " (the " + things + " so far)", at);
+  return static_cast<int>(index > 0 ? index - 1 : last + index);
+}
+
+/// A corner i, i/t, i/t/n or i//n: its vertex and its texture coordinates, from 0, or -1 for none.
+struct Corner {
+  int vertex, texture;
+};
+
+Corner parse_corner(std::string_view word, std::size_t vertices_so_far, std::size_t textures_so_far,
+                    const Location& at) {
   if (word.starts_with('/') || word.ends_with('/'))
     at.fail("the corner " + quoted(word) + " lacks an index, expected i, i/t, i/t/n or i//n");
   const std::size_t slash = word.find('/');
-  const long long index = at.integer(word.substr(0, slash));
-  if (slash != word.npos) {  // the texture and normal indices are not used, but must be indices
-    const std::string_view unused = word.substr(slash + 1);
-    const std::size_t second = unused.find('/');
-    if (second != 0) at.integer(unused.substr(0, second));
-    if (second != unused.npos) at.integer(unused.substr(second + 1));
+  const long long vertex = at.integer(word.substr(0, slash));
+  std::optional<long long> texture;
+  if (slash != word.npos) {
+    const std::string_view more = word.substr(slash + 1);
+    const std::size_t second = more.find('/');
+    if (second != 0) texture = at.integer(more.substr(0, second));
+    if (second != more.npos) at.integer(more.substr(second + 1));  // a normal: not used, but must be an index
   }
-  const auto so_far = static_cast<long long>(vertices_so_far);
-  if (index == 0 || index > std::numeric_limits<int>::max())
-    fail_index(index, "an index from 1 (or from -1 back)", at);
-  if (index < -so_far)
-    fail_index(index, "at least -" + std::to_string(so_far) + " (the vertices so far)", at);
-  return static_cast<int>(index > 0 ? index - 1 : so_far + index);
+  return {place(vertex, "vertex", "vertices", vertices_so_far, at),
+          texture ? place(*texture, "texture", "texture coordinates", textures_so_far, at) : -1};
 }
 
-void check_indices(const Mesh& mesh) {
+/// textures: of the corners, among `texture_count` in the file.
+void check_indices(const Mesh& mesh, const std::vector<int>& textures, std::size_t texture_count) {
   const auto vertices = static_cast<int>(mesh.vertices.size());
-  for (int f = 0; f < mesh.faces(); ++f)
-    for (const int vertex : mesh.face(f))
-      if (vertex >= vertices)
-        fail_index(vertex + 1LL, "at most " + std::to_string(vertices) + " (the vertices of the file)",
-                   {mesh.source, mesh.face_line[static_cast<std::size_t>(f)]});
+  for (int f = 0; f < mesh.faces(); ++f) {
+    const Location at{mesh.source, mesh.face_line[static_cast<std::size_t>(f)]};
+    for (int corner = mesh.face_offsets[f]; corner < mesh.face_offsets[f + 1]; ++corner) {
+      if (const int vertex = mesh.face_vertices[corner]; vertex >= vertices)
+        fail_index("vertex", vertex + 1LL,
+                   "at most " + std::to_string(vertices) + " (the vertices of the file)", at);
+      if (const int texture = textures[corner]; texture >= static_cast<int>(texture_count))
+        fail_index("texture", texture + 1LL,
+                   "at most " + std::to_string(texture_count) + " (the texture coordinates of the file)", at);
+    }
+  }
 }
 
 }  // namespace
@@ -95,6 +127,8 @@ Mesh read_obj(const std::string& path) {
   mesh.source = path;
   LineReader lines(mesh.source, text);
   Words words;
+  std::vector<Eigen::Vector2d> textures;  // of the file
+  std::vector<int> corner_textures;       // of the corners, -1 for none
   while (true) {
     const Location at = next_statement(lines, words);
     if (at.line == 0) break;
@@ -103,11 +137,16 @@ Mesh read_obj(const std::string& path) {
     if (keyword == "v") {
       mesh.vertices.push_back(parse_vertex(words, at));
       mesh.vertex_line.push_back(at.line);
+    } else if (keyword == "vt") {
+      textures.push_back(parse_texture(words, at));
     } else if (keyword == "f" || keyword == "fo") {  // "fo": what old files call it
       if (words.size() < 4)
         at.fail("a face with " + std::to_string(words.size() - 1) + " corners, expected 3 or more");
-      for (std::size_t i = 1; i < words.size(); ++i)
-        mesh.face_vertices.push_back(parse_corner(words[i], mesh.vertices.size(), at));
+      for (std::size_t i = 1; i < words.size(); ++i) {
+        const Corner corner = parse_corner(words[i], mesh.vertices.size(), textures.size(), at);
+        mesh.face_vertices.push_back(corner.vertex);
+        corner_textures.push_back(corner.texture);
+      }
       mesh.face_offsets.push_back(static_cast<int>(mesh.face_vertices.size()));
       mesh.face_line.push_back(at.line);
     } else if (std::ranges::find(skipped_keywords, keyword) == skipped_keywords.end()) {
@@ -117,7 +156,9 @@ Mesh read_obj(const std::string& path) {
   }
   if (mesh.vertices.empty()) throw InputError(path, 0, "no vertices, expected lines such as 'v 0 0 0'");
   if (mesh.faces() == 0) throw InputError(path, 0, "no faces, expected lines such as 'f 1 2 3'");
-  check_indices(mesh);
+  check_indices(mesh, corner_textures, textures.size());
+  if (std::ranges::find(corner_textures, -1) == corner_textures.end())
+    for (const int texture : corner_textures) mesh.corner_uv.push_back(textures[texture]);
   return mesh;
 }
 

@@ -44,7 +44,7 @@ class BlockSparseMatrix {
 /// block += a I + b n nᵀ, with n a vector of 3: the shape of every spring's Jacobian.
 inline void add_isotropic_and_axial(double* block, double a, double b, const double* n) {
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) block[3 * r + c] += (r == c ? a : 0.0) + b * n[r] * n[c];
+    for (int c = 0; c < 3; ++c) block[3 * r + c] += (r == c ? a : 0.0) + b * (n[r] * n[c]);
 }
 
 }  // namespace springstab

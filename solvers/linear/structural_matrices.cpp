@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -33,7 +34,8 @@ SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size)
                                 std::to_string(size) + " x " + std::to_string(size));
   for (Eigen::Index k = 0; k < a.nonZeros(); ++k)
     if (!std::isfinite(a.valuePtr()[k]))
-      throw std::invalid_argument("the " + name + " matrix has an entry that is not finite");
+      throw std::invalid_argument("the " + name +
+                                  " matrix has an entry that is not finite, expected finite numbers");
   const SparseMatrix transposed = a.transpose();
   const double asymmetry = largest_entry(a - transposed), largest = largest_entry(a);
   if (asymmetry > symmetry_tolerance * largest) {
@@ -59,6 +61,25 @@ SparseMatrix extract(const SparseMatrix& a, const std::vector<Eigen::Index>& row
   return part;
 }
 
+// Whether `a` is positive definite beyond doubt: a singular matrix often passes a Cholesky factorization by
+// its rounding alone, which is at most Σ γ(l_i + 2) a_ii with l_i the entries of row i of the factor (Rump
+// 2006).
+bool is_definite(const SparseMatrix& a) {
+  const Eigen::VectorXd diagonal = a.diagonal();
+  if (!(diagonal.array() > 0).all()) return false;
+  const Eigen::VectorXd d = diagonal.cwiseSqrt().cwiseInverse();
+  SparseMatrix scaled = d.asDiagonal() * a;
+  scaled = scaled * d.asDiagonal();
+  Eigen::SimplicialLLT<SparseMatrix> factor(scaled);
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::Index entries = SparseMatrix(factor.matrixL()).nonZeros() + 2 * a.rows();
+  SparseMatrix shift(a.rows(), a.cols());
+  shift.setIdentity();
+  shift *= std::numeric_limits<double>::epsilon() * static_cast<double>(entries);
+  factor.factorize(scaled - shift);
+  return factor.info() == Eigen::Success;
+}
+
 void condense(StructuralMatrices& s) {
   const Eigen::Index n = s.size();
   std::vector<Eigen::Index> heavy(n, -1), massless(n, -1);
@@ -81,10 +102,10 @@ void condense(StructuralMatrices& s) {
 
   const SparseMatrix k_ab = extract(s.stiffness, heavy, massless, a, b);
   const SparseMatrix k_bb = extract(s.stiffness, massless, massless, b, b);
-  const Eigen::SimplicialLLT<SparseMatrix> factor(k_bb);
-  if (factor.info() != Eigen::Success)
+  if (!is_definite(k_bb))
     throw std::invalid_argument("the stiffness between the " + std::to_string(b) +
                                 " massless unknowns is not positive definite, expected that they are held");
+  const Eigen::SimplicialLLT<SparseMatrix> factor(k_bb);
   const Eigen::MatrixXd correction = k_ab * factor.solve(Eigen::MatrixXd(k_ab.transpose()));
   const SparseMatrix k_aa = extract(s.stiffness, heavy, heavy, a, a);
   s.stiffness = k_aa - SparseMatrix((0.5 * (correction + correction.transpose())).sparseView(0.0, 0.0));
@@ -114,11 +135,14 @@ StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass, SparseMatr
   s.mass = checked(std::move(mass), "mass", n);
   if (damping.size() > 0) s.damping = checked(std::move(damping), "damping", n);
   for (Eigen::Index i = 0; i < n; ++i)
-    if (s.mass.coeff(i, i) < 0)
-      throw std::invalid_argument("the mass of unknown " + std::to_string(i + 1) + " is " +
-                                  std::to_string(s.mass.coeff(i, i)) + ", expected no negative mass");
+    if (s.mass.coeff(i, i) < 0) {
+      std::ostringstream message;
+      message << "the mass of unknown " << i + 1 << " is " << s.mass.coeff(i, i)
+              << ", expected no negative mass";
+      throw std::invalid_argument(message.str());
+    }
   condense(s);
-  if (Eigen::SimplicialLLT<SparseMatrix>(s.mass).info() != Eigen::Success)
+  if (!is_definite(s.mass))
     throw std::invalid_argument("the mass matrix is not positive definite, expected a positive definite one");
   return s;
 }

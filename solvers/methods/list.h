@@ -4,6 +4,7 @@
 
 #include "solvers/methods/explicit_euler.h"
 #include "solvers/methods/implicit_euler.h"
+#include "solvers/methods/linearized.h"
 #include "solvers/methods/rk2.h"
 #include "solvers/methods/rk4.h"
 #include "solvers/methods/symplectic_euler.h"
@@ -19,6 +20,7 @@ struct MethodList {
   }
 };
 
-using Methods = MethodList<ExplicitEuler, Rk2, Rk4, ImplicitEuler, SymplecticEuler>;
+using Methods = MethodList<ExplicitEuler, Rk2, Rk4, ImplicitEuler, SymplecticEuler, LinearizedExplicitEuler,
+                           LinearizedRk4>;
 
 }  // namespace springstab

@@ -18,10 +18,22 @@ struct Mesh {
   std::vector<long> vertex_line;  // one per vertex
   std::vector<long> face_line;    // one per face
 
+  /// Texture coordinates of the corners: one per entry of face_vertices, or none at all where the file leaves
+  /// a corner without. A vertex may have several, at a seam.
+  std::vector<Eigen::Vector2d> corner_uv{};
+
   int faces() const { return static_cast<int>(face_offsets.size()) - 1; }
   std::span<const int> face(int f) const {
     return {face_vertices.data() + face_offsets[f], face_vertices.data() + face_offsets[f + 1]};
   }
 };
+
+/// Throws InputError, with the mesh's file and line, unless there are faces, every coordinate is finite,
+/// every face has three or more distinct corners that exist, and every vertex belongs to a face.
+void check(const Mesh& mesh);
+
+/// Throw an InputError about a face or a vertex, with the mesh's file and, where it is known, the line.
+[[noreturn]] void fail_at_face(const Mesh& mesh, int face, const std::string& what);
+[[noreturn]] void fail_at_vertex(const Mesh& mesh, int vertex, const std::string& what);
 
 }  // namespace springstab

@@ -1,0 +1,107 @@
+#include "experiments/step_chooser.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/method_limits.h"
+#include "experiments/output.h"
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+namespace {
+
+constexpr double default_max_step = 0.01;  // [s], where nothing limits the step
+constexpr double tight_watch = 3;          // times the speed that energy conservation allows
+constexpr long patience = 20, progress = 10;
+
+}  // namespace
+
+StepChooser::StepChooser(Subject& subject, const CommonOptions& common, const SimulateOptions& options)
+    : subject_(subject),
+      common_(common),
+      options_(options),
+      method_(find_method(options.method)),
+      designed_(subject.damping().kind == DampingModel::Kind::designed) {}
+
+std::optional<double> StepChooser::recommended(const State<Vector>& state) {
+  const StiffestMode k0 = stiffest_mode(subject_.structure(state), {.seed = common_.seed});
+  if (!k0.converged) return reason_ = "k0 did not converge", std::nullopt;
+  DampingModel damping = subject_.damping();
+  if (designed_) damping.kind = DampingModel::Kind::designed;
+  const MethodLimits limits = method_limits(options_.method, k0, damping, options_.safety);
+  if (limits.status == LimitStatus::none)
+    return reason_ = "no positive step of " + options_.method +
+                     " is stable with this damping; choose another method (see springstab limits) or "
+                     "--damping designed",
+           std::nullopt;
+  if (limits.status == LimitStatus::unknown)
+    return reason_ = "the stable step of " + options_.method + " is not known for this damping; give --step",
+           std::nullopt;
+  if (!limits.recommended) return options_.max_step.value_or(default_max_step);
+  return std::min(*limits.recommended, options_.max_step.value_or(*limits.recommended));
+}
+
+// A whole number of steps, and of linearizations, ends at the duration.
+StepPlan StepChooser::plan(double largest_step, double duration) {
+  const auto count = [](double total, double part) {
+    return std::max(1.0, std::ceil(total / part * (1 - 1e-12)));
+  };
+  const double linearizations = method_.linearized ? count(duration, options_.relinearize) : 1;
+  const double steps = count(duration / linearizations, largest_step);
+  if (linearizations * steps > 1e15)
+    throw InputError("--step", 0,
+                     text("would need %.3g steps, expected at most 1e15", linearizations * steps));
+  StepPlan result{duration / linearizations / steps, static_cast<long>(linearizations * steps)};
+  if (method_.linearized) result.steps_per_linearization = static_cast<long>(steps);
+  if (designed_)
+    subject_.set_alpha(designed_alpha(stability_region(options_.method), result.h, subject_.damping().d0));
+  h_ = result.h;
+  return result;
+}
+
+std::optional<StepPlan> StepChooser::first_plan() {
+  const std::optional<double> step =
+      options_.step ? options_.step : recommended(subject_.initial_state(common_.seed));
+  if (!step) return std::nullopt;
+  return plan(*step, options_.duration);
+}
+
+EnergyWatch StepChooser::watch(const State<Vector>& start) {
+  EnergyWatch watch = subject_.energy_watch(start);
+  if (!options_.step) watch.slack = tight_watch;
+  return watch;
+}
+
+std::optional<NewPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {
+  if (options_.step || !subject_.scene()) return std::nullopt;
+  const bool first = failures_in_a_row_ == 1;
+  double step = recommended(state).value_or(h_ / 2);
+  if (step >= h_ * (1 - 1e-9)) step = method_.linearized && first ? h_ : h_ / 2;
+  ++rollbacks_;
+  const StepPlan next = plan(step, options_.duration - time);
+  EnergyWatch rebased = watch(state);  // what the divergence brought in stays in
+  rebased.start_time = time;
+  return NewPlan{next.h, next.steps, true, rebased};
+}
+
+StepPolicy StepChooser::policy() {
+  return
+      [this](const SimulationResult& so_far, const State<Vector>& state, double h) -> std::optional<NewPlan> {
+        failures_in_a_row_ = so_far.steps - steps_at_last_failure_ < progress ? failures_in_a_row_ + 1 : 1;
+        steps_at_last_failure_ = so_far.steps;
+        if (failures_in_a_row_ > patience) return std::nullopt;
+        switch (so_far.status) {
+          case StepStatus::diverged:
+            return after_divergence(so_far.time, state);
+          case StepStatus::not_positive_definite:
+            ++halved_steps_;
+            return NewPlan{h / 2, 2, false};
+          case StepStatus::not_converged:
+          case StepStatus::done:
+            break;
+        }
+        return std::nullopt;
+      };
+}
+
+}  // namespace springstab

@@ -1,0 +1,59 @@
+// Which step a run takes: at the start from the limits, and anew when a step fails.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "experiments/experiments.h"
+#include "experiments/input/subject.h"
+#include "solvers/simulation.h"
+
+namespace springstab {
+
+struct StepPlan {
+  double h;                          // [s]
+  long steps;                        // to the end
+  long steps_per_linearization = 1;  // of linearized methods
+};
+
+/// The paper's rule made a policy. A step that the user gave is kept, come what may. Otherwise the step is
+/// the recommended one, and after a divergence the last result is discarded, k0 is computed where the run
+/// stands, and the step (and designed damping) chosen for it; if the stiffness has not grown, a linearized
+/// method first tries again with K and D of the present state, and then the step is halved. When 1 + hD' +
+/// h²K' is not positive definite, the step is taken as two halves (paper §5.2). After 20 failures within 10
+/// steps' progress it gives up.
+class StepChooser {
+ public:
+  StepChooser(Subject& subject, const CommonOptions& common, const SimulateOptions& options);
+
+  /// Nothing where there is no stable step or none is known; reason() then says which.
+  std::optional<StepPlan> first_plan();
+  const std::string& reason() const { return reason_; }
+
+  /// Tight where there is a policy to save the run, wide where a fixed step decides.
+  EnergyWatch watch(const State<Vector>& start);
+
+  /// For simulate(); refers to this object.
+  StepPolicy policy();
+
+  double present_step() const { return h_; }
+  long rollbacks() const { return rollbacks_; }
+  long halved_steps() const { return halved_steps_; }
+
+ private:
+  std::optional<double> recommended(const State<Vector>& state);
+  StepPlan plan(double largest_step, double duration);
+  std::optional<NewPlan> after_divergence(double time, const State<Vector>& state);
+
+  Subject& subject_;
+  const CommonOptions& common_;
+  const SimulateOptions& options_;
+  const MethodInfo& method_;
+  bool designed_;
+  std::string reason_;
+  double h_ = 0;
+  long rollbacks_ = 0, halved_steps_ = 0;
+  long failures_in_a_row_ = 0, steps_at_last_failure_ = -1;
+};
+
+}  // namespace springstab

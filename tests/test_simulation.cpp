@@ -1,0 +1,409 @@
+// The simulation loop: limits hold in real runs, divergence is caught and undone, energy behaves as it must,
+// and what a run costs is what the methods say.
+#include <algorithm>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "analysis/method_limits.h"
+#include "solvers/counting.h"
+#include "solvers/scene/scene.h"
+#include "solvers/simulation.h"
+#include "tests/allocation_counter.h"
+
+using namespace springstab;
+
+namespace {
+
+using boost::test_tools::tolerance;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Vector random_vector(Eigen::Index size, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Vector v(size);
+  for (double& entry : v) entry = uniform(engine);
+  return v;
+}
+
+std::vector<int> first_row(int columns) {
+  std::vector<int> row(columns);
+  for (int j = 0; j < columns; ++j) row[j] = j;
+  return row;
+}
+
+/// A cloth on an n x n grid, hung by its first row.
+Scene cloth(int n, RayleighDamping damping = {}, double own_damping = 0) {
+  SpringMaterial material;
+  material.stiffness = {200, 100, 20};
+  material.damping = {own_damping, own_damping, own_damping};
+  return {make_net(Grid{n, n}, material), first_row(n), {0, -9.81, 0}, damping};
+}
+
+/// The linear system of the cloth a few percent stretched either way: K is positive definite then.
+BlockLinearSystem& stretched(Scene& scene, int columns) {
+  State<Vector> state = scene.rest_state();
+  for (Eigen::Index i = 0; i < state.x.size(); i += 3) state.x[i] *= 1.02, state.x[i + 2] *= 1.05;
+  std::vector<Eigen::Vector3d> places = scene.positions(state.x);
+  places.resize(columns);
+  for (Eigen::Vector3d& p : places) p[0] *= 1.02;
+  scene.place_pinned(places);
+  return scene.linearized(state.x, state.v);
+}
+
+StructuralMatrices matrices_of(const BlockLinearSystem& system) {
+  Vector mass(system.size());
+  for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = system.mass()[i / 3];
+  return prepare(system.stiffness().to_sparse(), SparseMatrix(mass.asDiagonal()));
+}
+
+double energy(System& system, const State<Vector>& state) {
+  return system.kinetic_energy(state.v) + system.potential_energy(state.x);
+}
+
+/// One unknown with x'' = -k x, times three.
+BlockLinearSystem oscillator(double k) {
+  BlockLinearSystem system({1.0}, {}, {});
+  const double none[3] = {0, 0, 0};
+  add_isotropic_and_axial(system.stiffness().block(0), k, 0, none);
+  return system;
+}
+
+State<Vector> displaced(Eigen::Index size) { return {Vector::Ones(size), Vector::Zero(size)}; }
+
+constexpr EnergyWatch asleep{.initial_energy = 1, .slack = infinity};
+
+/// Everything that a run showed.
+struct Record {
+  std::vector<SimulationResult> results;
+  std::vector<State<Vector>> states;
+
+  Observer observer(long stop_after = std::numeric_limits<long>::max()) {
+    return [this, stop_after](const SimulationResult& result, const State<Vector>& state) {
+      results.push_back(result);
+      states.push_back(state);
+      return result.steps < stop_after;
+    };
+  }
+};
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(simulation)
+
+// At 1.02 of the limit the slowest to grow is explicit Euler: |λ|² - 1 is about 0.02 Y, here 0.03.
+BOOST_AUTO_TEST_CASE(the_linear_limit_of_a_cloth_parts_bounded_runs_from_diverging_ones) {
+  const RayleighDamping damping{1, 3e-4};
+  Scene scene = cloth(32, damping);
+  BlockLinearSystem& system = stretched(scene, 32);
+  const StiffestMode k0 = stiffest_mode(matrices_of(system));
+  BOOST_TEST((k0.converged && !k0.indefinite));
+  const State<Vector> start{1e-3 * random_vector(system.size(), 1), Vector::Zero(system.size())};
+  const EnergyWatch watch{.initial_energy = energy(system, start)};
+  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+      const MethodLimits limits =
+          method_limits(method.name, k0, {DampingModel::Kind::rayleigh, damping.d0, damping.alpha}, 1.5);
+      if (method.implicit) {
+        BOOST_TEST((limits.status == LimitStatus::unlimited));
+        continue;
+      }
+      BOOST_TEST((limits.status == LimitStatus::limited));
+      const auto stepper = make_stepper(method.name, 1000);
+      State<Vector> state = start;
+      const SimulationResult below = simulate(system, *stepper, 0.98 * *limits.h_max, 1000, watch, state);
+      BOOST_TEST((below.status == StepStatus::done));
+      BOOST_TEST(below.steps == 1000);
+      BOOST_TEST(energy(system, state) < 0.5 * watch.initial_energy);
+
+      state = start;
+      stepper->forget();
+      const SimulationResult above = simulate(system, *stepper, 1.02 * *limits.h_max, 1500, watch, state);
+      BOOST_TEST((above.status == StepStatus::diverged));
+      BOOST_TEST(above.steps > 10);
+      BOOST_TEST(energy(system, state) > 1e3 * watch.initial_energy);
+    }
+}
+
+// With K and D positive semidefinite, backward Euler never raises the energy, at any step.
+BOOST_AUTO_TEST_CASE(implicit_euler_stays_bounded_far_beyond_the_explicit_limits) {
+  Scene scene = cloth(32, {}, 1e-4);
+  BlockLinearSystem& system = stretched(scene, 32);
+  system.solver.tolerance = 1e-8;
+  const double h = 100 * 2 / std::sqrt(stiffest_mode(matrices_of(system)).value);
+  State<Vector> state{1e-3 * random_vector(system.size(), 2), random_vector(system.size(), 3)};
+  const EnergyWatch watch{.initial_energy = energy(system, state), .slack = 1};
+  double last = watch.initial_energy;
+  const Observer observer = [&](const SimulationResult&, const State<Vector>& now) {
+    const double e = energy(system, now);
+    BOOST_TEST(e <= last * (1 + 1e-6));
+    last = e;
+    return true;
+  };
+  const auto stepper = make_stepper("implicit-euler");
+  const SimulationResult result = simulate(system, *stepper, h, 40, watch, state, observer);
+  BOOST_TEST((result.status == StepStatus::done));
+  BOOST_TEST(last < 0.1 * watch.initial_energy);
+  BOOST_TEST(last > 0);
+}
+
+// Undamped drift-kick Euler conserves E + (h/2) xᵀKv exactly. At half its limit h√k <= 1 for every mode, so
+// that E itself stays within a factor of (1 + ½)/(1 - ½) = 3.
+BOOST_AUTO_TEST_CASE(symplectic_euler_conserves_its_own_energy_for_ten_thousand_steps) {
+  Scene scene = cloth(12);
+  BlockLinearSystem& system = stretched(scene, 12);
+  const double h = 1 / std::sqrt(stiffest_mode(matrices_of(system)).value);
+  State<Vector> state{1e-3 * random_vector(system.size(), 4), random_vector(system.size(), 5)};
+  const double start = energy(system, state);
+  Vector force(system.size());
+  const auto own_energy = [&](const State<Vector>& now) {
+    system.stiffness().multiply(now.x.data(), force.data());
+    return energy(system, now) + h / 2 * force.dot(now.v);
+  };
+  const double own_start = own_energy(state);
+  double lowest = start, highest = start, drift = 0;
+  const Observer observer = [&](const SimulationResult&, const State<Vector>& now) {
+    const double e = energy(system, now);
+    lowest = std::min(lowest, e);
+    highest = std::max(highest, e);
+    drift = std::max(drift, std::abs(own_energy(now) / own_start - 1));
+    return true;
+  };
+  const auto stepper = make_stepper("symplectic-euler");
+  const SimulationResult result =
+      simulate(system, *stepper, h, 10'000, {.initial_energy = 3 * start, .slack = 1}, state, observer);
+  BOOST_TEST((result.status == StepStatus::done));
+  BOOST_TEST(result.steps == 10'000);
+  BOOST_TEST(drift < 1e-11);
+  BOOST_TEST(highest <= 3 * lowest);
+  BOOST_TEST(highest >= 1.001 * lowest);
+}
+
+BOOST_AUTO_TEST_CASE(the_observer_sees_every_state_from_the_first_on_and_can_stop) {
+  BlockLinearSystem system = oscillator(4);
+  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+      const double h = 0.01;
+      State<Vector> state = displaced(3), alone = state;
+      Record record;
+      const auto stepper = make_stepper(method.name);
+      SimulationResult result = simulate(system, *stepper, h, 7, asleep, state, record.observer());
+      BOOST_TEST((result.status == StepStatus::done));
+      BOOST_REQUIRE_EQUAL(record.states.size(), 8U);
+      for (long i = 0; i <= 7; ++i) {
+        BOOST_TEST(record.results[i].steps == i);
+        BOOST_TEST(record.results[i].time == static_cast<double>(i) * h, tolerance(1e-15));
+        BOOST_TEST((record.states[i].x == alone.x && record.states[i].v == alone.v));
+        BOOST_TEST((stepper->step(system, h, alone) == StepStatus::done));
+      }
+      BOOST_TEST((state.x == record.states[7].x && state.v == record.states[7].v));
+      BOOST_TEST(result.time == 7 * h, tolerance(1e-15));
+
+      Record stopped;
+      state = displaced(3);
+      result = simulate(system, *stepper, h, 7, asleep, state, stopped.observer(3));
+      BOOST_TEST(result.steps == 3);
+      BOOST_TEST((result.status == StepStatus::done));
+      BOOST_TEST((state.x == record.states[3].x));
+      result = simulate(system, *stepper, h, 7, asleep, state, stopped.observer(0));
+      BOOST_TEST(result.steps == 0);
+      result = simulate(system, *stepper, h, 0, asleep, state);
+      BOOST_TEST((result.steps == 0 && result.time == 0));
+      BOOST_TEST((state.x == record.states[3].x));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_run_that_diverges_ends_in_its_last_good_state) {
+  BlockLinearSystem system = oscillator(4);
+  const double h = 1.5;  // Y = 9: beyond every explicit method
+  for (const double slack : {10.0, 1e3, infinity})
+    for (const MethodInfo& method : all_methods()) {
+      if (method.implicit) continue;
+      BOOST_TEST_CONTEXT(method.name << ", slack " << slack) {
+        State<Vector> state = displaced(3);
+        const EnergyWatch watch{.initial_energy = energy(system, state), .slack = slack};
+        Record record;
+        const SimulationResult result =
+            simulate(system, *make_stepper(method.name), h, 100'000, watch, state, record.observer());
+        BOOST_TEST((result.status == StepStatus::diverged));
+        BOOST_TEST(result.steps + 1 == static_cast<long>(record.states.size()));
+        BOOST_TEST(result.time == h * static_cast<double>(result.steps), tolerance(1e-14));
+        BOOST_TEST((state.x == record.states.back().x && state.v == record.states.back().v));
+        BOOST_TEST((state.x.allFinite() && state.v.allFinite()));
+        for (const State<Vector>& good : record.states)
+          BOOST_TEST(std::sqrt(system.kinetic_energy(good.v)) <= slack * std::sqrt(watch.initial_energy));
+        State<Vector> next = state;
+        const StepStatus status = make_stepper(method.name)->step(system, h, next);
+        if (std::isfinite(slack)) {
+          BOOST_TEST((status == StepStatus::done));
+          BOOST_TEST(std::sqrt(system.kinetic_energy(next.v)) > slack * std::sqrt(watch.initial_energy));
+        } else {
+          BOOST_TEST((status == StepStatus::diverged));
+          BOOST_TEST(state.v.norm() > 1e300);
+        }
+      }
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_solve_that_fails_ends_the_run_with_its_reason) {
+  const auto stepper = make_stepper("implicit-euler");
+  BlockLinearSystem buckling = oscillator(-4);
+  State<Vector> state = displaced(3);
+  SimulationResult result = simulate(buckling, *stepper, 0.6, 5, asleep, state);  // 1 - 4h² < 0
+  BOOST_TEST((result.status == StepStatus::not_positive_definite));
+  BOOST_TEST(result.steps == 0);
+  BOOST_TEST((state.x == displaced(3).x));
+  result = simulate(buckling, *stepper, 0.4, 5, asleep, state);
+  BOOST_TEST((result.status == StepStatus::done));
+
+  Scene scene = cloth(5);
+  scene.solver().max_iterations = 1;
+  State<Vector> hanging = scene.rest_state();
+  hanging.v.setOnes();
+  const State<Vector> before = hanging;
+  result = simulate(scene, *stepper, 0.01, 5, asleep, hanging);
+  BOOST_TEST((result.status == StepStatus::not_converged));
+  BOOST_TEST((hanging.x == before.x && hanging.v == before.v));
+}
+
+BOOST_AUTO_TEST_CASE(a_policy_shortens_the_failed_step_or_the_rest_of_the_run) {
+  BlockLinearSystem system = oscillator(-4);  // backward Euler needs h < 0.5
+  for (const bool to_the_end : {false, true}) BOOST_TEST_CONTEXT("to the end " << to_the_end) {
+      State<Vector> state = displaced(3);
+      Record record;
+      int asked = 0;
+      const StepPolicy policy = [&](const SimulationResult& so_far, const State<Vector>& good, double h) {
+        ++asked;
+        BOOST_TEST((so_far.status == StepStatus::not_positive_definite));
+        BOOST_TEST(h == 0.6);
+        BOOST_TEST((good.x == state.x));
+        return std::optional(NewPlan{0.2, to_the_end ? 9 : 3, to_the_end});
+      };
+      const SimulationResult result =
+          simulate(system, *make_stepper("implicit-euler"), 0.6, 3, asleep, state, record.observer(), policy);
+      BOOST_TEST((result.status == StepStatus::done));
+      BOOST_TEST(result.steps == 9);
+      BOOST_TEST(result.failures == (to_the_end ? 1 : 3));
+      BOOST_TEST(asked == result.failures);
+      BOOST_TEST(result.time == 1.8, tolerance(1e-14));
+      State<Vector> alone = displaced(3);
+      simulate(system, *make_stepper("implicit-euler"), 0.2, 9, asleep, alone);
+      BOOST_TEST((state.x == alone.x && state.v == alone.v));
+      for (std::size_t i = 0; i < record.results.size(); ++i)
+        BOOST_TEST(record.results[i].time == 0.2 * static_cast<double>(i), tolerance(1e-14));
+    }
+}
+
+// From rest, √T = g √(m/2) t is attained in free fall: the watch must stand exactly there.
+BOOST_AUTO_TEST_CASE(the_watch_stands_where_free_fall_gets) {
+  SpringNet net;
+  net.rest = {{0, 0, 0}, {1, 0, 0}};
+  net.mass = {0.7, 0.2};
+  const Eigen::Vector3d g(2, -9, 1);
+  Scene scene(net, {}, g, {});
+  EnergyWatch watch{.gravity = g.norm(), .mass = scene.total_free_mass()};
+  BOOST_TEST(watch.mass == 0.9, tolerance(1e-15));
+  const auto run = [&](double slack) {
+    State<Vector> state = scene.rest_state();
+    watch.slack = slack;
+    return simulate(scene, *make_stepper("rk4"), 0.01, 100, watch, state).status;
+  };
+  BOOST_TEST((run(1 + 1e-12) == StepStatus::done));
+  BOOST_TEST((run(1 - 1e-12) == StepStatus::diverged));
+  EnergyWatch later = watch;
+  later.start_time = 3;
+  BOOST_TEST(later.diverged(1, 3.1) == watch.diverged(1, 0.1));
+  later.slack = watch.slack = 1;
+  const double t = std::sqrt(2 / watch.mass) / watch.gravity;  // where T = 1 J in free fall
+  BOOST_TEST((later.diverged(1, 3 + 0.99 * t) && !later.diverged(1, 3 + 1.01 * t)));
+  BOOST_TEST(watch.diverged(std::nan(""), 1));
+  BOOST_TEST(watch.diverged(infinity, 1));
+}
+
+// A falling, swinging, damped net, integrated accurately: never beyond the bound itself.
+BOOST_AUTO_TEST_CASE(the_watch_never_fires_in_a_passive_motion) {
+  for (const double own_damping : {0.0, 2e-3}) {
+    Scene scene = cloth(5, {0.2, 0}, own_damping);
+    State<Vector> state = scene.rest_state();
+    state.v = 0.5 * random_vector(state.v.size(), 6);
+    state.x *= 1.1;
+    EnergyWatch watch{.initial_energy = scene.kinetic_energy(state.v) + scene.elastic_energy(state.x),
+                      .gravity = scene.gravity().norm(),
+                      .mass = scene.total_free_mass(),
+                      .slack = 1};
+    double nearest = 0;
+    const Observer observer = [&](const SimulationResult& so_far, const State<Vector>& now) {
+      const double bound =
+          std::sqrt(watch.initial_energy) + watch.gravity * std::sqrt(watch.mass / 2) * so_far.time;
+      nearest = std::max(nearest, std::sqrt(scene.kinetic_energy(now.v)) / bound);
+      return true;
+    };
+    const SimulationResult result = simulate(scene, *make_stepper("rk4"), 1e-4, 8000, watch, state, observer);
+    BOOST_TEST((result.status == StepStatus::done));
+    BOOST_TEST(nearest < 1);
+    BOOST_TEST(nearest > 0.4);
+  }
+}
+
+// The cost of a step: forces, assemblies, and products with K where the linear system is used.
+BOOST_AUTO_TEST_CASE(a_step_costs_what_its_method_says) {
+  const std::map<std::string, Counts> known{
+      {"explicit-euler", {1, 0, 0, 0}},
+      {"rk2", {2, 0, 0, 0}},
+      {"rk4", {4, 0, 0, 0}},
+      {"symplectic-euler", {1, 0, 0, 0}},
+      {"implicit-euler", {1, 1, 1, 0}},  // besides the iterations
+      {"linearized-explicit-euler", {1, 1, 2, 0}},
+      {"linearized-rk4", {1, 1, 5, 0}},
+  };
+  for (const double own_damping : {0.0, 1e-4})
+    for (const MethodInfo& method : all_methods())
+      BOOST_TEST_CONTEXT(method.name << ", own damping " << own_damping) {
+        const auto cost = known.find(std::string(method.name));
+        BOOST_REQUIRE(cost != known.end());
+        Scene scene = cloth(6, {1, 1e-4}, own_damping);
+        State<Vector> state = scene.rest_state(), alone = state;
+        CountingSystem counting(scene);
+        constexpr long steps = 5;
+        const SimulationResult result =
+            simulate(counting, *make_stepper(method.name), 1e-4, steps, asleep, state);
+        BOOST_TEST((result.status == StepStatus::done));
+        const Counts& counts = counting.counts();
+        BOOST_TEST(counts.force_evaluations == steps * cost->second.force_evaluations);
+        BOOST_TEST(counts.hessian_assemblies == steps * cost->second.hessian_assemblies);
+        BOOST_TEST((counts.cg_iterations > 0) == method.implicit);
+        if (own_damping == 0 || method.implicit)
+          BOOST_TEST(counts.block_products ==
+                     steps * cost->second.block_products + (own_damping == 0 ? 1 : 2) * counts.cg_iterations);
+
+        simulate(scene, *make_stepper(method.name), 1e-4, steps, asleep, alone);
+        BOOST_TEST((state.x == alone.x && state.v == alone.v));
+        BOOST_TEST((state.x != scene.rest_state().x));
+        BOOST_TEST(counting.size() == scene.size());
+        BOOST_TEST(energy(counting, state) == energy(scene, state));
+      }
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_allocated_after_the_first_step) {
+  for (const double own_damping : {0.0, 1e-4})
+    for (const MethodInfo& method : all_methods())
+      BOOST_TEST_CONTEXT(method.name << ", own damping " << own_damping) {
+        Scene scene = cloth(6, {1, 1e-4}, own_damping);
+        State<Vector> state = scene.rest_state();
+        const auto stepper = make_stepper(method.name);
+        long after_first = 0, at_last = 0;
+        const Observer observer = [&](const SimulationResult& so_far, const State<Vector>&) {
+          (so_far.steps <= 1 ? after_first : at_last) = allocations();
+          return true;
+        };
+        const long before = allocations();
+        simulate(scene, *stepper, 1e-4, 20, asleep, state, observer);
+        BOOST_TEST(at_last == after_first);
+        BOOST_TEST(after_first > before, "the counter does not count");
+      }
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -79,9 +79,7 @@ std::optional<NewPlan> StepChooser::after_divergence(double time, const State<Ve
   if (step >= h_ * (1 - 1e-9)) step = method_.linearized && first ? h_ : h_ / 2;
   ++rollbacks_;
   const StepPlan next = plan(step, options_.duration - time);
-  EnergyWatch rebased = watch(state);  // what the divergence brought in stays in
-  rebased.start_time = time;
-  return NewPlan{next.h, next.steps, true, rebased};
+  return NewPlan{next.h, next.steps, true};
 }
 
 StepPolicy StepChooser::policy() {

@@ -6,11 +6,11 @@
 namespace springstab {
 
 bool EnergyWatch::diverged(double kinetic_energy, double t) const {
-  const double bound = std::sqrt(initial_energy) + gravity * std::sqrt(mass / 2) * (t - start_time);
+  const double bound = std::sqrt(initial_energy) + gravity * std::sqrt(mass / 2) * t;
   return !(std::sqrt(kinetic_energy) <= slack * bound);
 }
 
-SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, EnergyWatch watch,
+SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
   struct Plan {
     double start, h;
@@ -47,7 +47,6 @@ SimulationResult simulate(System& system, Stepper& stepper, double h, long steps
     stepper.forget();
     ++result.failures;
     if (next->to_the_end) plans.clear();
-    if (next->watch) watch = *next->watch;
     plans.push_back({result.time, next->h, next->steps});
   }
   return result;

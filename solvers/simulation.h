@@ -19,7 +19,6 @@ struct EnergyWatch {
   double initial_energy = 0;  // E0 [J]
   double gravity = 0;         // g [m/s²]
   double mass = 0;            // m of all that moves [kg]
-  double start_time = 0;      // when E0 was taken [s]
   double slack = 1e3;
 
   bool diverged(double kinetic_energy, double t) const;
@@ -40,7 +39,6 @@ struct NewPlan {
   double h;
   long steps;
   bool to_the_end;  // replaces the rest of the run; otherwise the failed step only, and the old h follows
-  std::optional<EnergyWatch> watch = {};  // from now on, where the run goes on with what energy it has
 };
 
 /// Asked after a failed step (so_far.status says why) with the last good state. It may also change the
@@ -51,7 +49,7 @@ using StepPolicy = std::function<std::optional<NewPlan>(const SimulationResult& 
 /// Takes `steps` steps of h from `state`. After anything but `done` the state is the last good one: neither
 /// non-finite nor implausible states reach the observer. With a policy a failed step is discarded (paper
 /// §4, 2.3), the method forgets what it had linearized, and the run goes on with the new plan.
-SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, EnergyWatch watch,
+SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {});
 
 }  // namespace springstab

@@ -701,7 +701,7 @@ BOOST_AUTO_TEST_CASE(each_condition_is_damped_by_its_own_rate) {
       const double weight = scaling == AreaScaling::continuum ? area : area * area;
       const double power = v.dot(model.force(model.stretch_shear_damping(), x, v));
       BOOST_TEST(power == -2 * weight * rate * rate, tolerance(1e-7));
-      BOOST_TEST(std::abs(rate) > 0.1);
+      BOOST_TEST(std::abs(rate) > 0.01);
     }
   // The angle of a butterfly that opens at 3 rad/s.
   const Model model = hinge({0, 1, 2, 3}, 0, butterfly(0), 0.3);
@@ -911,7 +911,7 @@ BOOST_AUTO_TEST_CASE(a_mesh_in_any_plane_has_coordinates_along_the_axis_that_fit
       {axes({1, 0, 0}, {0, 1, 0}), {1, 0, 0}},
       {axes({0, 1, 0}, {0, 0, 1}), {0, 1, 0}},
       {axes(Vector3d(1, 1, 0).normalized(), {0, 0, 1}), {0, 0, 1}},
-      {axes(Vector3d(3, 1, 0).normalized(), Vector3d(-1, 3, 1).normalized()), {}},
+      {axes(Vector3d(3, 1, 0).normalized(), Vector3d(-1, 3, 1).normalized()), {0, 0, 0}},
   };
   for (const auto& c : cases) {
     const auto [mesh, triangles] = uv_of(c.turn);
@@ -1051,7 +1051,7 @@ BOOST_AUTO_TEST_CASE(a_bad_mesh_is_refused_at_its_line) {
   for (const auto& c : cases) expect_error([&] { make_cloth(c.mesh, {}); }, c.place, c.words);
   expect_error(
       [&] {
-        make_cloth(make_mesh(square, {{0, 1, 2, 3}}), {.area_density = 1e-320});
+        make_cloth(make_mesh(square, {{0, 1, 2, 3}}), {.area_density = 1e-323});
       },
       "cloth.obj:1", "has a mass of");
 }

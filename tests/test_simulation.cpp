@@ -313,12 +313,9 @@ BOOST_AUTO_TEST_CASE(the_watch_stands_where_free_fall_gets) {
   };
   BOOST_TEST((run(1 + 1e-12) == StepStatus::done));
   BOOST_TEST((run(1 - 1e-12) == StepStatus::diverged));
-  EnergyWatch later = watch;
-  later.start_time = 3;
-  BOOST_TEST(later.diverged(1, 3.1) == watch.diverged(1, 0.1));
-  later.slack = watch.slack = 1;
+  watch.slack = 1;
   const double t = std::sqrt(2 / watch.mass) / watch.gravity;  // where T = 1 J in free fall
-  BOOST_TEST((later.diverged(1, 3 + 0.99 * t) && !later.diverged(1, 3 + 1.01 * t)));
+  BOOST_TEST((watch.diverged(1, 0.99 * t) && !watch.diverged(1, 1.01 * t)));
   BOOST_TEST(watch.diverged(std::nan(""), 1));
   BOOST_TEST(watch.diverged(infinity, 1));
 }
@@ -404,6 +401,55 @@ BOOST_AUTO_TEST_CASE(nothing_is_allocated_after_the_first_step) {
         BOOST_TEST(at_last == after_first);
         BOOST_TEST(after_first > before, "the counter does not count");
       }
+}
+
+// Theory of the two methods on a cloth with frozen K: explicit Euler's damping hK turns drift-kick.
+BOOST_AUTO_TEST_CASE(explicit_euler_with_alpha_h_takes_symplectic_eulers_steps_on_a_frozen_cloth) {
+  const double h = 4e-4;
+  Scene damped = cloth(7, {0.7, h}), plain = cloth(7, {0.7, 0});
+  BlockLinearSystem& a = stretched(damped, 7);
+  BlockLinearSystem& b = stretched(plain, 7);
+  State<Vector> one{1e-3 * random_vector(a.size(), 1), random_vector(a.size(), 2)}, other = one;
+  const auto explicit_euler = make_stepper("explicit-euler"),
+             symplectic_euler = make_stepper("symplectic-euler");
+  for (int i = 0; i < 100; ++i) {
+    BOOST_REQUIRE((explicit_euler->step(a, h, one) == StepStatus::done));
+    BOOST_REQUIRE((symplectic_euler->step(b, h, other) == StepStatus::done));
+  }
+  BOOST_TEST((one.x - other.x).norm() < 1e-11 * other.x.norm());
+  BOOST_TEST((one.v - other.v).norm() < 1e-11 * other.v.norm());
+  BOOST_TEST(other.v.norm() > 0.1);
+}
+
+// On a linear system there is nothing to freeze; on a cloth the difference is of the second order in the time
+// that a linearization lasts.
+BOOST_AUTO_TEST_CASE(a_linearized_method_is_the_one_inside_where_forces_are_linear) {
+  const std::map<std::string, std::string> inside{{"linearized-explicit-euler", "explicit-euler"},
+                                                  {"linearized-rk4", "rk4"}};
+  for (const auto& [linearized, plain] : inside) {
+    Scene scene = cloth(6, {1, 1e-4});
+    BlockLinearSystem& linear = stretched(scene, 6);
+    State<Vector> one{1e-3 * random_vector(linear.size(), 3), random_vector(linear.size(), 4)}, other = one;
+    const auto frozen = make_stepper(linearized, 7), free = make_stepper(plain);
+    const auto run = [&](System& system, double h, int steps) {
+      frozen->forget();
+      for (int i = 0; i < steps; ++i) {
+        BOOST_REQUIRE((frozen->step(system, h, one) == StepStatus::done));
+        BOOST_REQUIRE((free->step(system, h, other) == StepStatus::done));
+      }
+      return (one.x - other.x).norm();
+    };
+    BOOST_TEST(run(linear, 1e-4, 30) < 1e-11 * other.x.norm());
+
+    const State<Vector> rest = scene.rest_state();
+    double apart[2];
+    for (const int halved : {0, 1}) {
+      one = other = {rest.x + 1e-3 * random_vector(rest.x.size(), 5), rest.v};
+      apart[halved] = run(scene, halved ? 5e-5 : 1e-4, 7);  // one linearization
+    }
+    BOOST_TEST(apart[0] / apart[1] > 8);  // ∫∫ of a force error that grows like t²: t⁴, hence about 16
+    BOOST_TEST(apart[0] / apart[1] < 32);
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

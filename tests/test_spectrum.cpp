@@ -314,7 +314,7 @@ BOOST_AUTO_TEST_CASE(arpack_finds_the_spectra_that_are_known) {
 }
 
 BOOST_AUTO_TEST_CASE(an_eigenvalue_scales_with_the_unit_of_time) {
-  const int n = 400;
+  const int n = 200;
   for (const double scale : {1e-200, 1e-20, 1e-12, 1.0, 1e20, 1e200}) BOOST_TEST_CONTEXT("scale " << scale) {
       const SparseMatrix a = scale * fixed_chain(n);
       const SymmetricEigenpairs found = largest_eigenpairs(product_with(a), 1);
@@ -620,7 +620,7 @@ BOOST_AUTO_TEST_CASE(real_structures_have_the_k0_that_others_computed) {
           DampingModel designed = rayleigh(0.05 / h0, 0);
           designed.kind = DampingModel::Kind::designed;
           std::vector<DampingModel> dampings{designed};
-          if (name == "bcsst01" || name == "nos1")  // the others only repeat them in their own units
+          if (name == "bcsst01")  // the others would only repeat it in their own units
             for (const auto& [d0, alpha] :
                  {std::pair{0.05, 0.0}, {3.0, 0.0}, {0.0, 0.02}, {0.0, 5.0}, {0.05, 0.3}})
               dampings.push_back(rayleigh(d0 / h0, alpha * h0));

@@ -447,8 +447,10 @@ BOOST_AUTO_TEST_CASE(a_linearized_method_is_the_one_inside_where_forces_are_line
       one = other = {rest.x + 1e-3 * random_vector(rest.x.size(), 5), rest.v};
       apart[halved] = run(scene, halved ? 5e-5 : 1e-4, 7);  // one linearization
     }
-    BOOST_TEST(apart[0] / apart[1] > 8);  // ∫∫ of a force error that grows like t²: t⁴, hence about 16
-    BOOST_TEST(apart[0] / apart[1] < 32);
+    // From rest x moves like t² and v like t, so alpha K(x) v is wrong by t³ and the spring force by t⁴; twice
+    // integrated, the positions part like t⁵ to t⁶.
+    BOOST_TEST(apart[0] / apart[1] > 24);
+    BOOST_TEST(apart[0] / apart[1] < 72);
   }
 }
 

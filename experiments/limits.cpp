@@ -92,12 +92,12 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
     std::cout << text(", d0 = %g 1/s, alpha = %g s", damping.d0, damping.alpha);
   if (damping.kind == DampingModel::Kind::designed)
     std::cout << text(", d0 = %g 1/s, alpha fitted to the step", damping.d0);
-  std::cout << text("\n\n%-18s %-10s %12s %12s %14s   %s\n", "method", "status", "h_max [s]", "certified",
+  std::cout << text("\n\n%-26s %-10s %12s %12s %14s   %s\n", "method", "status", "h_max [s]", "certified",
                     text("use (F=%g)", safety).c_str(), "with fitted damping: h_max, alpha");
 }
 
 void print(std::string_view method, const MethodLimits& l) {
-  std::cout << text("%-18s %-10s %12s %12s %14s   ", std::string(method).c_str(), name(l.status),
+  std::cout << text("%-26s %-10s %12s %12s %14s   ", std::string(method).c_str(), name(l.status),
                     cell(l.h_max).c_str(), cell(l.h_certified).c_str(), cell(l.recommended).c_str());
   std::cout << (l.designed ? text("%.6g, %.4g", l.designed->h_max, l.designed->alpha) : "-") << '\n';
 }

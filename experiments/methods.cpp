@@ -26,7 +26,7 @@ long force_evaluations(std::string_view method) {
 int run_methods(const CommonOptions& common) {
   Json list = Json::array();
   if (!common.json)
-    std::cout << text("%-18s %5s %6s %9s %14s %14s %9s %12s %12s\n", "method", "order", "forces", "implicit",
+    std::cout << text("%-26s %5s %6s %9s %14s %14s %9s %12s %12s\n", "method", "order", "forces", "implicit",
                       "Y_max", "at X", "attained", "real axis", "imag. axis");
   for (const MethodInfo& info : all_methods()) {
     const RegionConstants& c = stability_region(info.name).constants();
@@ -42,7 +42,7 @@ int run_methods(const CommonOptions& common) {
                     {"real_interval", number(c.real_interval)},
                     {"imaginary_interval", number(c.imaginary_interval)}});
     if (!common.json)
-      std::cout << text("%-18s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n",
+      std::cout << text("%-26s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n",
                         std::string(info.name).c_str(), info.order, force_evaluations(info.name),
                         info.implicit ? "yes" : "no", c.y_max,
                         bounded ? text("%.11g", c.x_at_y_max).c_str() : "-", c.y_max_attained ? "yes" : "no",

@@ -327,11 +327,11 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
   BlockLinearSystem system({1, 1}, {}, pair);
   const double none[3] = {0, 0, 0};
   const auto set = [&](double a, double c) {
-    BlockSparseMatrix& k = system.stiffness();
-    k.set_zero();
+    BlockSparseMatrix& values = system.stiffness();
+    values.set_zero();
     for (const int i : {0, 1}) {
-      add_isotropic_and_axial(k.block(k.diagonal(i)), a, 0, none);
-      add_isotropic_and_axial(k.block(k.find(i, 1 - i)), -c, 0, none);
+      add_isotropic_and_axial(values.block(values.diagonal(i)), a, 0, none);
+      add_isotropic_and_axial(values.block(values.find(i, 1 - i)), -c, 0, none);
     }
   };
   Random random(4);
@@ -342,6 +342,9 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
   set(-1, 0);  // already a diagonal block is negative beyond h = 1
   BOOST_TEST((status(0.99) == StepStatus::done));
   BOOST_TEST((status(1.01) == StepStatus::not_positive_definite));
+  set(1, 0);  // and is seen even where the right-hand side does not look
+  system.stiffness().block(system.stiffness().diagonal(1))[4] = -1;
+  BOOST_TEST((system.solve_shifted(1.01, Vector::Unit(6, 0), y).status == StepStatus::not_positive_definite));
   set(1, 2);  // diagonal blocks 1 + h², but an eigenvalue 1 - h²
   BOOST_TEST((status(0.99) == StepStatus::done));
   BOOST_TEST((status(1.01) == StepStatus::not_positive_definite));

@@ -656,6 +656,24 @@ BOOST_AUTO_TEST_CASE(real_roots_of_polynomials) {
   check({1e-9, 1, 1e6}, {{-3e-8}}, 1e-12);  // of different size
   check({0.3, 1, 1}, {{1}}, 1e-6);          // a double root keeps half of the digits
   check({-1.5, -1.5, 2, 2}, {{1, 1, 1}}, 1e-6);
+  // A simple root is as good as its polynomial can be evaluated there, also where coefficients differ in
+  // size.
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> uniform(-1, 1), exponent(-6, 6);
+  int simple = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    Polynomial p, size;
+    for (int i = 0; i <= 8; ++i) {
+      p.c.push_back(uniform(random) * std::pow(10, exponent(random)));
+      size.c.push_back(std::abs(p.c.back()));
+    }
+    for (const double root : p.real_roots()) {
+      if (std::abs(root * p.derivative()(root)) < 1e-3 * size(std::abs(root))) continue;  // nearly double
+      ++simple;
+      BOOST_TEST(std::abs(p(root)) <= 16 * oracles::epsilon * size(std::abs(root)), "root " << root);
+    }
+  }
+  BOOST_TEST(simple > 200);
   BOOST_TEST(Polynomial{}.real_roots().empty());
   BOOST_TEST(Polynomial{{3}}.real_roots().empty());
   BOOST_TEST((Polynomial{{1, 0, 1}}).real_roots().empty());

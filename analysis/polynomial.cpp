@@ -18,10 +18,14 @@ void trim(std::vector<double>& c) {
   while (!c.empty() && c.back() == 0) c.pop_back();
 }
 
-// One Newton step at a simple root gains the digits that the companion matrix lost.
+// Newton's method at a simple root gains the digits that the companion matrix lost.
 double polished(const Polynomial& p, const Polynomial& slope, double root) {
-  const double better = root - p(root) / slope(root);
-  return std::isfinite(better) && std::abs(p(better)) < std::abs(p(root)) ? better : root;
+  for (int i = 0; i < 10; ++i) {
+    const double better = root - p(root) / slope(root);
+    if (!std::isfinite(better) || !(std::abs(p(better)) < std::abs(p(root)))) break;
+    root = better;
+  }
+  return root;
 }
 
 }  // namespace

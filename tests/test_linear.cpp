@@ -274,7 +274,7 @@ BOOST_AUTO_TEST_CASE(a_block_system_solves_to_its_tolerance) {
       const auto norm = [&](const Vector& r) { return std::sqrt(r.dot(blocks.llt().solve(r))); };
       const Vector b = dense.m * rhs;
       for (const double tolerance : {1e-2, 1e-6, 1e-12}) BOOST_TEST_CONTEXT("h " << h << ", " << tolerance) {
-          system.solver = {.tolerance = tolerance};
+          system.solver = {.tolerance = tolerance, .preconditioner = Preconditioner::block_jacobi};
           Vector y;
           const SolveReport report = system.solve_shifted(h, rhs, y);
           BOOST_TEST((report.status == StepStatus::done));
@@ -289,6 +289,7 @@ BOOST_AUTO_TEST_CASE(a_block_system_solves_to_its_tolerance) {
 
 BOOST_AUTO_TEST_CASE(iterations_run_out_exactly_when_they_are_needed) {
   BlockLinearSystem system = chain(60, 1e4);  // h² k0 = 40 000 with h = 1
+  system.solver.preconditioner = Preconditioner::block_jacobi;
   Random random(2);
   const Vector rhs = random.vector(system.size());
   Vector y;
@@ -337,7 +338,13 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
   Random random(4);
   const Vector rhs = random.vector(6);
   Vector y;
-  const auto status = [&](double h) { return system.solve_shifted(h, rhs, y).status; };
+  const auto status = [&](double h) {
+    system.solver.preconditioner = Preconditioner::block_jacobi;
+    const StepStatus found = system.solve_shifted(h, rhs, y).status;
+    system.solver.preconditioner = Preconditioner::block_ssor;
+    BOOST_TEST((system.solve_shifted(h, rhs, y).status == found));
+    return found;
+  };
 
   set(-1, 0);  // already a diagonal block is negative beyond h = 1
   BOOST_TEST((status(0.99) == StepStatus::done));
@@ -586,6 +593,83 @@ BOOST_AUTO_TEST_CASE(massless_unknowns_that_nothing_holds_are_refused) {
     }
   const Dense k{{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}, m = Eigen::Vector3d(1, 0, 1).asDiagonal();
   expect_refused([&] { prepare(sparse(k), sparse(m)); }, "the stiffness between the 1 massless unknowns");
+}
+
+// ‖b - Hy‖ in the norm of the inverse of (D' + L) D'⁻¹ (D' + Lᵀ), D' = D/ω.
+BOOST_AUTO_TEST_CASE(over_relaxation_solves_to_its_tolerance_in_its_norm) {
+  for_each_system([](BlockLinearSystem& system, Random& random) {
+    const DenseSystem dense(system);
+    const Vector rhs = random.vector(system.size());
+    for (const double h : {1e-3, 0.3, 20.0}) {
+      const Dense shifted = dense.shifted(h);
+      Dense diagonal = Dense::Zero(system.size(), system.size()),
+            lower = shifted.triangularView<Eigen::Lower>();
+      for (Eigen::Index i = 0; i < system.size(); i += 3) {
+        diagonal.block<3, 3>(i, i) = shifted.block<3, 3>(i, i) / BlockSsor::relaxation;
+        lower.block<3, 3>(i, i) = diagonal.block<3, 3>(i, i);
+      }
+      const Dense p = lower * diagonal.llt().solve(Dense(lower.transpose()));
+      const auto norm = [&](const Vector& r) { return std::sqrt(r.dot(p.llt().solve(r))); };
+      const Vector b = dense.m * rhs;
+      for (const double tolerance : {1e-2, 1e-6, 1e-12}) BOOST_TEST_CONTEXT("h " << h << ", " << tolerance) {
+          system.solver = {.tolerance = tolerance, .preconditioner = Preconditioner::block_ssor};
+          Vector y;
+          const SolveReport report = system.solve_shifted(h, rhs, y);
+          BOOST_TEST((report.status == StepStatus::done));
+          BOOST_TEST(norm(b - shifted * y) <= (tolerance + 1e-13) * norm(b));
+          BOOST_TEST(report.iterations >= 1);
+          BOOST_TEST(report.products == report.iterations);
+          if (tolerance == 1e-12) check_equal(y, shifted.llt().solve(b), 1e-9);
+        }
+    }
+  });
+}
+
+// Ĥ is symmetric, and its curvature along ŷ = (1 + L̂)ᵀ Cᵀ y that of H along y, whether positive or not.
+BOOST_AUTO_TEST_CASE(the_over_relaxed_operator_is_symmetric_with_the_curvature_of_the_matrix) {
+  Random random(21);
+  BlockLinearSystem system = random_system(14, {}, true, random);
+  for (const double shift : {1.0, -0.05}) {
+    const BlockSparseMatrix& k = system.stiffness();
+    const BlockSparseMatrix* c = system.own_damping();
+    Dense h = shift * (Dense(k.to_sparse()) + 0.3 * Dense(c->to_sparse()));
+    for (Eigen::Index i = 0; i < h.rows(); ++i) h(i, i) += 7 * system.mass()[i / 3];
+    BlockSsor ssor;
+    const bool usable = ssor.set(7, system.mass(), shift, k, 0.3 * shift, c);
+    if (shift > 0) BOOST_REQUIRE(usable);
+    if (!usable) continue;
+    const auto fours = [&] {
+      Vector u = random.vector(4 * k.rows());
+      for (Eigen::Index i = 3; i < u.size(); i += 4) u[i] = 0;
+      return u;
+    };
+    const Vector p = fours(), q = fours();
+    Vector hp, hq, y;
+    const double curvature = ssor.multiply(p, hp);
+    ssor.multiply(q, hq);
+    BOOST_TEST(q.dot(hp) == p.dot(hq), boost::test_tools::tolerance(1e-10));
+    BOOST_TEST(curvature == p.dot(hp), boost::test_tools::tolerance(1e-12));
+    ssor.transform_back(p, y);
+    BOOST_TEST(curvature == y.dot(h * y), boost::test_tools::tolerance(1e-10));
+    for (Eigen::Index i = 3; i < hp.size(); i += 4) BOOST_TEST(hp[i] == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(over_relaxation_takes_fewer_iterations_to_the_same_solution) {
+  BlockLinearSystem system = chain(300, 1e4);
+  Random random(22);
+  const Vector rhs = random.vector(system.size());
+  Vector jacobi, relaxed;
+  system.solver = {.tolerance = 1e-10, .preconditioner = Preconditioner::block_jacobi};
+  const SolveReport slow = system.solve_shifted(0.3, rhs, jacobi);
+  system.solver.preconditioner = Preconditioner::block_ssor;
+  const SolveReport fast = system.solve_shifted(0.3, rhs, relaxed);
+  BOOST_TEST((slow.status == StepStatus::done && fast.status == StepStatus::done));
+  check_equal(relaxed, jacobi, 1e-7);
+  BOOST_TEST(2 * fast.iterations < slow.iterations);
+  const Vector once = relaxed;
+  system.solve_shifted(0.3, rhs, relaxed);
+  BOOST_TEST((relaxed == once));
 }
 
 BOOST_AUTO_TEST_SUITE_END()

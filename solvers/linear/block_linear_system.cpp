@@ -16,35 +16,33 @@ BlockLinearSystem::BlockLinearSystem(
     : mass_(std::move(mass)),
       damping_(damping),
       stiffness_(static_cast<int>(mass_.size()), stiffness_couplings) {
+  for (const double m : mass_) inverse_mass_.push_back(1 / m);
   if (own_damping_couplings) own_damping_.emplace(static_cast<int>(mass_.size()), *own_damping_couplings);
-}
-
-template <class Scale>
-void BlockLinearSystem::scale_by_mass(Vector& u, Scale scale) const {
-  for (std::size_t i = 0; i < mass_.size(); ++i) u.segment<3>(3 * i) *= scale(mass_[i]);
 }
 
 void BlockLinearSystem::acceleration(const Vector& x, const Vector& v, Vector& out) {
   out.resize(size());
-  if (damping_.alpha == 0) {
-    stiffness_.multiply(x.data(), out.data());
-  } else {
+  const Vector* in = &x;
+  if (damping_.alpha != 0) {
     w_ = x + damping_.alpha * v;
-    stiffness_.multiply(w_.data(), out.data());
+    in = &w_;
   }
+  const double d0 = damping_.d0;
   if (own_damping_) {
     product_.resize(size());
     own_damping_->multiply(v.data(), product_.data());
-    out += product_;
   }
-  scale_by_mass(out, [](double m) { return -1 / m; });
-  if (damping_.d0 != 0) out -= damping_.d0 * v;
+  stiffness_.multiply_rows(in->data(), [&](long i, Eigen::Vector3d force) {
+    if (own_damping_) force += product_.segment<3>(3 * i);
+    out.segment<3>(3 * i) = -inverse_mass_[i] * force - d0 * v.segment<3>(3 * i);
+  });
 }
 
 void BlockLinearSystem::stiffness_times(const Vector& u, Vector& out) {
   out.resize(size());
-  stiffness_.multiply(u.data(), out.data());
-  scale_by_mass(out, [](double m) { return 1 / m; });
+  stiffness_.multiply_rows(u.data(), [&](long i, const Eigen::Vector3d& force) {
+    out.segment<3>(3 * i) = inverse_mass_[i] * force;
+  });
 }
 
 void BlockLinearSystem::damping_times(const Vector& u, Vector& out) {
@@ -71,29 +69,55 @@ bool BlockLinearSystem::invert_diagonal_blocks(double mass_factor, double stiffn
 
 // M (1 + hD' + h²K') = (1 + h d0) M + (h alpha + h²) K + hC is symmetric.
 SolveReport BlockLinearSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
+  rhs_.resize(size());
+  for (long i = 0; i < stiffness_.rows(); ++i) rhs_.segment<3>(3 * i) = mass_[i] * rhs.segment<3>(3 * i);
+  return solver.preconditioner == Preconditioner::block_ssor ? solve_by_block_ssor(h, out)
+                                                             : solve_by_block_jacobi(h, out);
+}
+
+SolveReport BlockLinearSystem::solve_by_block_ssor(double h, Vector& out) {
+  if (!ssor_.set(1 + h * damping_.d0, mass_, h * (damping_.alpha + h), stiffness_, h, own_damping()))
+    return {.status = StepStatus::not_positive_definite};
+  ssor_.transform(rhs_, transformed_rhs_);
+  SolveReport report =
+      conjugate_gradient_.solve([&](const Vector& p, Vector& q) { return ssor_.multiply(p, q); },
+                                transformed_rhs_, transformed_out_, solver);
+  ssor_.transform_back(transformed_out_, out);
+  report.products = report.iterations;
+  return report;
+}
+
+SolveReport BlockLinearSystem::solve_by_block_jacobi(double h, Vector& out) {
   const double mass_factor = 1 + h * damping_.d0, stiffness_factor = h * (damping_.alpha + h);
   if (!invert_diagonal_blocks(mass_factor, stiffness_factor, h))
     return {.status = StepStatus::not_positive_definite};
-
   const auto apply = [&](const Vector& p, Vector& q) {
     q.resize(size());
-    stiffness_.multiply(p.data(), q.data());
-    for (std::size_t i = 0; i < mass_.size(); ++i)
-      q.segment<3>(3 * i) =
-          stiffness_factor * q.segment<3>(3 * i) + mass_factor * mass_[i] * p.segment<3>(3 * i);
     if (own_damping_) {
       product_.resize(size());
       own_damping_->multiply(p.data(), product_.data());
-      q += h * product_;
     }
+    Eigen::Array3d dot = Eigen::Array3d::Zero();
+    stiffness_.multiply_rows(p.data(), [&](long i, const Eigen::Vector3d& force) {
+      const Eigen::Vector3d pi = p.segment<3>(3 * i);
+      Eigen::Vector3d qi = stiffness_factor * force + mass_factor * mass_[i] * pi;
+      if (own_damping_) qi += h * product_.segment<3>(3 * i);
+      q.segment<3>(3 * i) = qi;
+      dot += pi.array() * qi.array();
+    });
+    return dot.sum();
   };
   const auto precondition = [&](const Vector& r, Vector& z) {
     z.resize(size());
-    for (std::size_t i = 0; i < mass_.size(); ++i)
-      z.segment<3>(3 * i) = Eigen::Map<const Block>(&inverse_blocks_[9 * i]) * r.segment<3>(3 * i);
+    Eigen::Array3d dot = Eigen::Array3d::Zero();
+    for (long i = 0; i < stiffness_.rows(); ++i) {
+      const Eigen::Vector3d ri = r.segment<3>(3 * i);
+      const Eigen::Vector3d zi = Eigen::Map<const Block>(&inverse_blocks_[9 * i]) * ri;
+      z.segment<3>(3 * i) = zi;
+      dot += ri.array() * zi.array();
+    }
+    return dot.sum();
   };
-  rhs_ = rhs;
-  scale_by_mass(rhs_, [](double m) { return m; });
   SolveReport report = conjugate_gradient_.solve(apply, precondition, rhs_, out, solver);
   report.products = report.iterations * (own_damping_ ? 2 : 1);
   return report;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/linear/block_sparse_matrix.h"
+#include "solvers/linear/block_ssor.h"
 #include "solvers/linear/conjugate_gradient.h"
 #include "solvers/system.h"
 
@@ -18,8 +19,7 @@ struct RayleighDamping {
 };
 
 /// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone
-/// an acceleration is one block product, K (x + alpha v). Solves by block-Jacobi preconditioned conjugate
-/// gradients.
+/// an acceleration is one block product, K (x + alpha v). Solves by preconditioned conjugate gradients.
 class BlockLinearSystem final : public LinearSystem {
  public:
   /// mass: one per particle [kg]. K and C [N/m, N·s/m] start at zero and are filled through stiffness() and
@@ -32,6 +32,7 @@ class BlockLinearSystem final : public LinearSystem {
   const BlockSparseMatrix& stiffness() const { return stiffness_; }
   BlockSparseMatrix* own_damping() { return own_damping_ ? &*own_damping_ : nullptr; }
   const std::vector<double>& mass() const { return mass_; }
+  const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   const RayleighDamping& damping() const { return damping_; }
   void set_damping(const RayleighDamping& damping) { damping_ = damping; }
   ConjugateGradientOptions solver;
@@ -45,17 +46,18 @@ class BlockLinearSystem final : public LinearSystem {
   double potential_energy(const Vector& x) override;
 
  private:
+  SolveReport solve_by_block_jacobi(double h, Vector& out);
+  SolveReport solve_by_block_ssor(double h, Vector& out);
   bool invert_diagonal_blocks(double mass_factor, double stiffness_factor, double damping_factor);
-  template <class Scale>
-  void scale_by_mass(Vector& u, Scale scale) const;
 
-  std::vector<double> mass_;
+  std::vector<double> mass_, inverse_mass_;
   RayleighDamping damping_;
   BlockSparseMatrix stiffness_;
   std::optional<BlockSparseMatrix> own_damping_;
   ConjugateGradient conjugate_gradient_;
-  std::vector<double> inverse_blocks_;  // of the diagonal of H, 9 per particle
-  Vector w_, product_, rhs_;
+  std::vector<double> inverse_blocks_;  // of the diagonal of H, 9 per particle, for block Jacobi
+  BlockSsor ssor_;
+  Vector w_, product_, rhs_, transformed_rhs_, transformed_out_;
 };
 
 }  // namespace springstab

@@ -29,7 +29,7 @@ BlockSparseMatrix::BlockSparseMatrix(int rows, std::span<const std::pair<int, in
     ++row_start_[i + 1];
   }
   for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
-  value_.assign(9 * column_.size(), 0.0);
+  value_.assign(9 * column_.size() + 1, 0.0);
 }
 
 long BlockSparseMatrix::find(int i, int j) const {
@@ -44,15 +44,9 @@ long BlockSparseMatrix::find(int i, int j) const {
 void BlockSparseMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
 
 void BlockSparseMatrix::multiply(const double* in, double* out) const {
-  const double* b = value_.data();
-  for (int i = 0; i < rows(); ++i) {
-    double sum[3] = {0, 0, 0};
-    for (long k = row_start_[i]; k < row_start_[i + 1]; ++k, b += 9) {
-      const double* u = in + 3 * static_cast<long>(column_[k]);
-      for (int r = 0; r < 3; ++r) sum[r] += b[3 * r] * u[0] + b[3 * r + 1] * u[1] + b[3 * r + 2] * u[2];
-    }
-    std::copy(sum, sum + 3, out + 3 * static_cast<long>(i));
-  }
+  multiply_rows(in, [&](int i, const Eigen::Vector3d& y) {
+    Eigen::Map<Eigen::Vector3d>(out + 3 * static_cast<long>(i)) = y;
+  });
 }
 
 Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {

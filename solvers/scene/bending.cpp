@@ -3,27 +3,15 @@
 namespace springstab {
 namespace {
 
-/// The second derivative of one side's θ in (r, δe), times a factor: [[rr, re], [reᵀ, ee]].
+/// The second derivative of one side's θ in (r, δe), times a factor: [[rr, re], [reᵀ, ½ η rr]].
 struct SideHessian {
-  Mat3 rr, re, ee;
+  Mat3 rr, re;
 };
 
 [[gnu::always_inline]] inline SideHessian hessian(const HingeSide& side, const Vec3& g, double factor) {
   const Vec3 q = -factor * side.p;
-  const Mat3 qc = outer(q, side.c), rr = qc + transposed(qc);
-  return {rr, outer(g, q), (side.eta / 2) * rr};
-}
-
-// With r = Σ ρ_c δx_c and δe = Σ ε_c δx_c over the corners (x0, x1, apex):
-// ρ = (s - 1, -s, 1), ε = (-1, 1, 0).
-[[gnu::always_inline]] inline Mat3 edge_block(const SideHessian& h, double rho_c, double epsilon_c,
-                                              double rho_d, double epsilon_d) {
-  return (rho_c * rho_d) * h.rr + (rho_c * epsilon_d) * h.re + (epsilon_c * rho_d) * transposed(h.re) +
-         (epsilon_c * epsilon_d) * h.ee;
-}
-
-[[gnu::always_inline]] inline Mat3 apex_block(const SideHessian& h, double rho_c, double epsilon_c) {
-  return rho_c * h.rr + epsilon_c * transposed(h.re);
+  const Mat3 qc = outer(q, side.c);
+  return {qc + transposed(qc), outer(g, q)};
 }
 
 }  // namespace
@@ -111,21 +99,28 @@ void Bending::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness
       const HingeGradient g = gradient(shape);
       const double turned = k * rest.turned(shape, i);
       const SideHessian a = hessian(shape.a, shape.g, turned), b_ = hessian(shape.b, shape.g, turned);
+      // In r = Σ ρ_c δx_c and δe = Σ ε_c δx_c, x1 has ρ = -s, ε = 1 and the apex ρ = 1, ε = 0. What is left
+      // follows from translation, which changes no force: the blocks of a row add up to zero.
       const double s = shape.a.s, t = shape.b.s;
-      const Vec3 k0 = k * g.x0, k1 = k * g.x1, k2 = k * g.x2, k3 = k * g.x3;
-      blocks.set(
-          0, 0, i,
-          outer(k0, g.x0) + edge_block(a, s - 1, -1, s - 1, -1) + edge_block(b_, t - 1, -1, t - 1, -1));
-      blocks.set(0, 1, i,
-                 outer(k0, g.x1) + edge_block(a, s - 1, -1, -s, 1) + edge_block(b_, t - 1, -1, -t, 1));
-      blocks.set(1, 1, i, outer(k1, g.x1) + edge_block(a, -s, 1, -s, 1) + edge_block(b_, -t, 1, -t, 1));
-      blocks.set(0, 2, i, outer(k0, g.x2) + apex_block(a, s - 1, -1));
-      blocks.set(1, 2, i, outer(k1, g.x2) + apex_block(a, -s, 1));
-      blocks.set(0, 3, i, outer(k0, g.x3) + apex_block(b_, t - 1, -1));
-      blocks.set(1, 3, i, outer(k1, g.x3) + apex_block(b_, -t, 1));
-      blocks.set(2, 2, i, outer(k2, g.x2) + a.rr);
-      blocks.set(3, 3, i, outer(k3, g.x3) + b_.rr);
-      blocks.set(2, 3, i, outer(k2, g.x3));
+      const Vec3 k1 = k * g.x1, k2 = k * g.x2, k3 = k * g.x3;
+      const Mat3 k22 = outer(k2, g.x2) + a.rr, k33 = outer(k3, g.x3) + b_.rr, k23 = outer(k2, g.x3);
+      const Mat3 k12 = outer(k1, g.x2) + transposed(a.re) + (-s) * a.rr;
+      const Mat3 k13 = outer(k1, g.x3) + transposed(b_.re) + (-t) * b_.rr;
+      const Mat3 re = (-s) * a.re + (-t) * b_.re;
+      const Mat3 k11 = outer(k1, g.x1) + (s * s + shape.a.eta / 2) * a.rr +
+                       (t * t + shape.b.eta / 2) * b_.rr + (re + transposed(re));
+      const Mat3 k02 = -(k12 + k22 + transposed(k23)), k03 = -(k13 + k23 + k33);
+      const Mat3 k01 = -(k11 + transposed(k12) + transposed(k13));
+      blocks.set(0, 0, i, -(k01 + k02 + k03));
+      blocks.set(0, 1, i, k01);
+      blocks.set(0, 2, i, k02);
+      blocks.set(0, 3, i, k03);
+      blocks.set(1, 1, i, k11);
+      blocks.set(1, 2, i, k12);
+      blocks.set(1, 3, i, k13);
+      blocks.set(2, 2, i, k22);
+      blocks.set(2, 3, i, k23);
+      blocks.set(3, 3, i, k33);
     }
     places_.add(elements, b, blocks, stiffness);
   }

@@ -29,7 +29,7 @@ class Bending final : public ElasticTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& stiffness) { places_.bind(hinges_->elements(), stiffness); }
+  void bind(const BlockSparseMatrix& stiffness) override { places_.bind(hinges_->elements(), stiffness); }
 
  private:
   std::shared_ptr<const HingeAngles> hinges_;

@@ -23,7 +23,7 @@ class StretchShearDamping final : public DampingTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& damping) { places_.bind(triangles_->elements(), damping); }
+  void bind(const BlockSparseMatrix& damping) override { places_.bind(triangles_->elements(), damping); }
 
  private:
   std::shared_ptr<const TriangleConditions> triangles_;
@@ -43,7 +43,7 @@ class BendingDamping final : public DampingTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& damping) { places_.bind(hinges_->elements(), damping); }
+  void bind(const BlockSparseMatrix& damping) override { places_.bind(hinges_->elements(), damping); }
 
  private:
   std::shared_ptr<const HingeAngles> hinges_;

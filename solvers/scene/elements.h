@@ -158,13 +158,12 @@ class BlockPlaces {
       const Place place = bound ? places_[batch * batch_size + lane] : look_up(elements, particles, matrix);
       for (int c = 0, pair = 0; c < corners; ++c) {
         if (elements.is_free(particles[c]))
-          add_block(blocks.entry + 9 * upper<corners>(c, c), lane,
-                    matrix.block(matrix.diagonal(particles[c])));
+          add_on_diagonal(blocks.entry + 9 * upper<corners>(c, c), lane,
+                          matrix.block(matrix.diagonal(particles[c])));
         for (int d = c + 1; d < corners; ++d, ++pair) {
           if (place[pair].above < 0) continue;
-          const double(*entry)[batch_size] = blocks.entry + 9 * upper<corners>(c, d);
-          add_block(entry, lane, matrix.block(place[pair].above));
-          add_transposed(entry, lane, matrix.block(place[pair].below));
+          add_off_diagonal(blocks.entry + 9 * upper<corners>(c, d), lane, matrix.block(place[pair].above),
+                           matrix.block(place[pair].below));
         }
       }
     }
@@ -190,13 +189,24 @@ class BlockPlaces {
     return place;
   }
 
-  static void add_block(const double (*entry)[batch_size], int lane, double* to) {
-    for (int k = 0; k < 9; ++k) to[k] += entry[k][lane];
+  using Entries = const double (*)[batch_size];
+
+  /// Reads the upper triangle: a block on the diagonal is symmetric, but for its rounding.
+  static void add_on_diagonal(Entries entry, int lane, double* to) {
+    const double xx = entry[0][lane], xy = entry[1][lane], xz = entry[2][lane];
+    const double yy = entry[4][lane], yz = entry[5][lane], zz = entry[8][lane];
+    to[0] += xx, to[1] += xy, to[2] += xz;
+    to[3] += xy, to[4] += yy, to[5] += yz;
+    to[6] += xz, to[7] += yz, to[8] += zz;
   }
 
-  static void add_transposed(const double (*entry)[batch_size], int lane, double* to) {
+  static void add_off_diagonal(Entries entry, int lane, double* above, double* below) {
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) to[3 * r + c] += entry[3 * c + r][lane];
+      for (int c = 0; c < 3; ++c) {
+        const double value = entry[3 * r + c][lane];
+        above[3 * r + c] += value;
+        below[3 * c + r] += value;
+      }
   }
 
   const BlockSparseMatrix* matrix_ = nullptr;

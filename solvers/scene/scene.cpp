@@ -65,9 +65,8 @@ Scene::Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::
 
   auto elastic = select(net.springs, number_, free_count_, [](const Spring& s) { return s.stiffness > 0; });
   auto damped = select(net.springs, number_, free_count_, [](const Spring& s) { return s.damping > 0; });
-  if (!elastic.empty()) elastic_terms_.push_back(std::make_unique<Springs>(std::move(elastic), free_count_));
-  if (!damped.empty())
-    damping_terms_.push_back(std::make_unique<AxialDamping>(std::move(damped), free_count_));
+  if (!elastic.empty()) elastic_terms_.push_back(std::make_unique<Springs>(elastic, free_count_));
+  if (!damped.empty()) damping_terms_.push_back(std::make_unique<AxialDamping>(damped, free_count_));
 
   const Couplings stiffness = all_couplings(elastic_terms_);
   if (damping_terms_.empty()) {
@@ -75,7 +74,9 @@ Scene::Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::
   } else {
     linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness,
                                                   all_couplings(damping_terms_));
+    for (const auto& term : damping_terms_) term->bind(*linear_->own_damping());
   }
+  for (const auto& term : elastic_terms_) term->bind(linear_->stiffness());
 }
 
 void Scene::set_damping(const RayleighDamping& damping) {
@@ -114,15 +115,18 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   const ParticleField positions = position_field(x);
   out.setZero(size());
   for (const auto& term : elastic_terms_) {
-    term->add_force(positions, out.data());
-    if (damping_.alpha != 0) term->add_stiffness_times(positions, v.data(), -damping_.alpha, out.data());
+    if (damping_.alpha == 0) {
+      term->add_force(positions, out.data());
+    } else {
+      term->add_damped_force(positions, v.data(), damping_.alpha, out.data());
+    }
   }
   for (const auto& term : damping_terms_)
     term->add_force(positions, {v.data(), pinned_velocity_.data(), free_count_}, out.data());
-  for (int i = 0; i < free_count_; ++i)
-    out.segment<3>(3 * static_cast<long>(i)) =
-        out.segment<3>(3 * static_cast<long>(i)) / linear_->mass()[i] + gravity_;
-  if (damping_.d0 != 0) out -= damping_.d0 * v;
+  const std::vector<double>& inverse_mass = linear_->inverse_mass();
+  for (long i = 0; i < free_count_; ++i)
+    out.segment<3>(3 * i) =
+        inverse_mass[i] * out.segment<3>(3 * i) + gravity_ - damping_.d0 * v.segment<3>(3 * i);
 }
 
 BlockLinearSystem& Scene::linearized(const Vector& x, const Vector&) {

@@ -6,41 +6,99 @@
 // step reports that it diverged.
 #pragma once
 
-#include <span>
+#include <algorithm>
+#include <vector>
 
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/terms.h"
 
 namespace springstab {
 
-/// The elastic part. Particle numbers are a scene's own: free ones first, `free_count` of them.
+/// Pairs of particles in a scene's own numbers: free ones first, `free_count` of them. Worked on in batches
+/// that stay in the first-level cache: gathered pair by pair, computed vector by vector, added pair by pair.
+/// Pairs with one first particle in a row load and store it once.
+class ParticlePairs {
+ public:
+  static constexpr int batch_size = 64;
+  /// One number per pair of a batch, and a vector per pair.
+  using Numbers = double[batch_size];
+  using Vectors = double[3][batch_size];
+  /// Of one pair, the block a I + b uuᵀ; u with a zero behind.
+  struct Kept {
+    double u[4], a, b;
+  };
+
+  ParticlePairs(const std::vector<Spring>& springs, int free_count);
+
+  int size() const { return static_cast<int>(i_.size()); }
+  Couplings couplings() const;
+  void bind(const BlockSparseMatrix& matrix);
+
+  /// Calls work(begin, count) for every batch.
+  template <class Work>
+  void for_each_batch(const Work& work) const {
+    for (int begin = 0; begin < size(); begin += batch_size)
+      work(begin, std::min(batch_size, size() - begin));
+  }
+
+  /// out = u_i - u_j for the pairs of a batch.
+  void gather(const ParticleField& u, int begin, int count, Vectors& out) const;
+  /// The same of free particles' vectors that are zero at the pinned ones.
+  void gather(const double* u, int begin, int count, Vectors& out) const;
+  /// out_i += u, out_j -= u at the free particles.
+  void scatter(const Vectors& u, int begin, int count, double* out) const;
+  /// Blocks B = a I + b uuᵀ are kept until all are known, and then matrix += [[B, -B], [-B, B]] on the free
+  /// particles, row by row of the matrix: to scatter them pair by pair misses the caches too often.
+  void keep(const Numbers& a, const Numbers& b, const Vectors& u, int begin, int count) const;
+  void add_kept_blocks(BlockSparseMatrix& matrix) const;
+
+ private:
+  template <class At>
+  void gather_from(const At& at, int begin, int count, Vectors& out) const;
+
+  /// Where the block that a pair of i stands for is in row i of a matrix; -1 beside a pinned particle.
+  long find_place(const BlockSparseMatrix& matrix, int i, int pair) const;
+
+  std::vector<int> i_, j_;
+  int free_count_;
+  const BlockSparseMatrix* bound_ = nullptr;
+  std::vector<long> incident_start_;  // the pairs of each free particle, ascending, in compressed rows
+  std::vector<int> incident_;
+  std::vector<long> place_;  // of each incident pair in the bound matrix
+  mutable std::vector<Kept> kept_;
+};
+
+/// The elastic part.
 class Springs final : public ElasticTerm {
  public:
-  Springs(std::vector<Spring> springs, int free_count);
+  Springs(const std::vector<Spring>& springs, int free_count);
 
   double energy(const ParticleField& x) const override;
   void add_force(const ParticleField& x, double* force) const override;
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
-  Couplings couplings() const override;
+  void add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const override;
+  Couplings couplings() const override { return pairs_.couplings(); }
+  void bind(const BlockSparseMatrix& stiffness) override { pairs_.bind(stiffness); }
   void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
 
  private:
-  std::vector<Spring> springs_;
-  int free_count_;
+  ParticlePairs pairs_;
+  std::vector<double> stiffness_, rest_length_;
 };
 
 /// The damping part, over the springs with k_d > 0.
 class AxialDamping final : public DampingTerm {
  public:
-  AxialDamping(std::vector<Spring> springs, int free_count);
+  AxialDamping(const std::vector<Spring>& springs, int free_count);
 
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
-  Couplings couplings() const override;
+  Couplings couplings() const override { return pairs_.couplings(); }
+  void bind(const BlockSparseMatrix& damping) override { pairs_.bind(damping); }
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;
 
  private:
-  std::vector<Spring> springs_;
-  int free_count_;
+  ParticlePairs pairs_;
+  std::vector<double> damping_;
 };
 
 }  // namespace springstab

@@ -39,7 +39,7 @@ class StretchShear final : public ElasticTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& stiffness) { places_.bind(triangles_->elements(), stiffness); }
+  void bind(const BlockSparseMatrix& stiffness) override { places_.bind(triangles_->elements(), stiffness); }
 
  private:
   enum class Curvature { exact, positive };

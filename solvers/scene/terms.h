@@ -35,7 +35,14 @@ class ElasticTerm {
   /// particle.
   virtual void add_stiffness_times(const ParticleField& x, const double* u, double scale,
                                    double* out) const = 0;
+  /// force -= ∂E/∂x + alpha K(x) v, for terms that can share work between the two.
+  virtual void add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const {
+    add_force(x, force);
+    add_stiffness_times(x, v, -alpha, force);
+  }
   virtual Couplings couplings() const = 0;
+  /// Lets a term look up where its blocks are: called once, with the matrix that add_stiffness will be given.
+  virtual void bind(const BlockSparseMatrix&) {}
   /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
   virtual void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;
 };
@@ -47,6 +54,8 @@ class DampingTerm {
   /// force -= C(x) v [N].
   virtual void add_force(const ParticleField& x, const ParticleField& v, double* force) const = 0;
   virtual Couplings couplings() const = 0;
+  /// Likewise with the matrix that add_damping will be given.
+  virtual void bind(const BlockSparseMatrix&) {}
   /// damping += C(x) [N·s/m]. The change of C with x is neglected, as everywhere.
   virtual void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const = 0;
 };

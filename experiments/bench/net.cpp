@@ -1,0 +1,230 @@
+// The speed table for nets of springs: square ones like experiments/scenes/hanging_net_64.json, 10² to 10⁶
+// particles, the first row pinned, 0.2 s into their fall (larger nets: waved). One core. Every line has its
+// time per particle; what is bound by memory also GB/s and the fraction of the bandwidth that a plain sum
+// over a large array reads at, measured just before; the others their time in block products, measured just
+// before as well.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "solvers/scene/scene.h"
+#include "solvers/stepper.h"
+
+namespace {
+
+using namespace springstab;
+
+constexpr double h_implicit = 0.01;  // [s]
+
+struct Net {
+  std::unique_ptr<Scene> scene;
+  State<Vector> state;
+  double particles;
+};
+
+Net make(int n) {
+  const SpringNet net = make_net(Grid{n, n, 0.025}, {.particle_mass = 1.25e-4, .stiffness = {200, 100, 20}});
+  std::vector<int> first_row(n);
+  for (int j = 0; j < n; ++j) first_row[j] = j;
+  Net made{std::make_unique<Scene>(net, first_row, Eigen::Vector3d(0, -9.81, 0), RayleighDamping{1, 1e-3}),
+           {},
+           static_cast<double>(n) * n};
+  made.state = made.scene->rest_state();
+  if (n <= 128) {
+    const auto stepper = make_stepper("implicit-euler");
+    for (int k = 0; k < 20; ++k) stepper->step(*made.scene, h_implicit, made.state);
+  } else {
+    for (Eigen::Index i = 0; i < made.state.x.size(); i += 3) {
+      made.state.x[i + 1] = 0.01 * std::sin(9 * made.state.x[i] + 5 * made.state.x[i + 2]);
+      made.state.x[i + 2] *= 1.02;
+      made.state.v[i + 1] = 0.1;
+    }
+  }
+  return made;
+}
+
+Net& net(int n) {
+  static std::map<int, Net> kept;
+  if (!kept.contains(n)) {
+    kept.clear();  // the large ones take a gigabyte
+    kept.emplace(n, make(n));
+  }
+  return kept.at(n);
+}
+
+/// CPU time of this thread [s].
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The least of several runs [s]: on a shared machine the others measure the neighbours.
+template <class Work>
+double least_seconds(int runs, const Work& work) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < runs; ++k) {
+    const double start = cpu_seconds();
+    work();
+    least = std::min(least, cpu_seconds() - start);
+  }
+  return least;
+}
+
+/// A plain sum over 256 MB [B/s].
+double read_bandwidth() {
+  static const Vector array = Vector::Ones(32 << 20);
+  const double seconds = least_seconds(5, [] {
+    double sum = array.sum();
+    benchmark::DoNotOptimize(sum);
+  });
+  return static_cast<double>(array.size()) * sizeof(double) / seconds;
+}
+
+double product_seconds(const BlockSparseMatrix& matrix, const Vector& x) {
+  Vector out(x.size());
+  return least_seconds(20, [&] {
+    matrix.multiply(x.data(), out.data());
+    benchmark::DoNotOptimize(out.data());
+  });
+}
+
+/// Runs work, of which `bytes` are the memory moved or, if 0, `unit` the seconds of a block product.
+template <class Work>
+void run(benchmark::State& state, const Net& subject, double bytes, double unit, const Work& work) {
+  const double bandwidth = bytes > 0 ? read_bandwidth() : 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    const double start = cpu_seconds();
+    work();
+    benchmark::ClobberMemory();
+    least = std::min(least, cpu_seconds() - start);
+  }
+  state.counters["best_us"] = 1e6 * least;
+  state.counters["ns/particle"] = 1e9 * least / subject.particles;
+  if (bytes > 0) {
+    state.counters["GB/s"] = 1e-9 * bytes / least;
+    state.counters["of_bandwidth"] = bytes / least / bandwidth;
+  } else {
+    state.counters["products"] = least / unit;
+  }
+}
+
+double product_bytes(const BlockSparseMatrix& matrix) {
+  return 76.0 * static_cast<double>(matrix.blocks()) + 56.0 * matrix.rows();
+}
+
+void read(benchmark::State& state) {
+  double best = 0;
+  for (auto _ : state) best = std::max(best, read_bandwidth());
+  state.counters["GB/s"] = 1e-9 * best;
+}
+BENCHMARK(read)->Unit(benchmark::kMillisecond);
+
+void product(benchmark::State& state) {
+  Net& n = net(static_cast<int>(state.range(0)));
+  const BlockSparseMatrix& k = n.scene->linearized(n.state.x, n.state.v).stiffness();
+  Vector out(n.state.x.size());
+  run(state, n, product_bytes(k), 0, [&] { k.multiply(n.state.x.data(), out.data()); });
+}
+
+// The loop that anyone would write.
+void plain_product(benchmark::State& state) {
+  Net& n = net(static_cast<int>(state.range(0)));
+  const BlockSparseMatrix& k = n.scene->linearized(n.state.x, n.state.v).stiffness();
+  Vector out(n.state.x.size());
+  run(state, n, product_bytes(k), 0, [&] {
+    for (int i = 0; i < k.rows(); ++i) {
+      double sum[3] = {0, 0, 0};
+      for (long place = k.row_begin(i); place < k.row_begin(i + 1); ++place) {
+        const double* b = k.block(place);
+        const double* u = n.state.x.data() + 3 * static_cast<long>(k.column(place));
+        for (int r = 0; r < 3; ++r) sum[r] += b[3 * r] * u[0] + b[3 * r + 1] * u[1] + b[3 * r + 2] * u[2];
+      }
+      std::copy(sum, sum + 3, out.data() + 3 * static_cast<long>(i));
+    }
+  });
+}
+
+template <class Work>
+void run_in_products(benchmark::State& state, const Work& work) {
+  Net& n = net(static_cast<int>(state.range(0)));
+  BlockLinearSystem& linear = n.scene->linearized(n.state.x, n.state.v);
+  run(state, n, 0, product_seconds(linear.stiffness(), n.state.x), [&] { work(n, linear); });
+}
+
+void force(benchmark::State& state) {
+  Vector a;
+  net(static_cast<int>(state.range(0))).scene->set_damping({1, 0});
+  run_in_products(state, [&](Net& n, BlockLinearSystem&) { n.scene->acceleration(n.state.x, n.state.v, a); });
+  net(static_cast<int>(state.range(0))).scene->set_damping({1, 1e-3});
+}
+
+void damped_force(benchmark::State& state) {
+  Vector a;
+  run_in_products(state, [&](Net& n, BlockLinearSystem&) { n.scene->acceleration(n.state.x, n.state.v, a); });
+}
+
+void assembly(benchmark::State& state) {
+  run_in_products(state, [](Net& n, BlockLinearSystem&) { n.scene->linearized(n.state.x, n.state.v); });
+}
+
+// A step of linearized explicit Euler: one product with K of x + alpha v, and two vectors advanced.
+void linear_substep(benchmark::State& state) {
+  const auto stepper = make_stepper("explicit-euler");
+  State<Vector> s = net(static_cast<int>(state.range(0))).state;
+  s.x *= 1e-6;  // a small displacement
+  run_in_products(state, [&](Net&, BlockLinearSystem& linear) {
+    stepper->step(linear, 1e-9, s);  // too short to move far
+  });
+}
+
+void implicit_step(benchmark::State& state, Preconditioner preconditioner, double tolerance) {
+  const auto stepper = make_stepper("implicit-euler");
+  State<Vector> s;
+  run_in_products(state, [&](Net& n, BlockLinearSystem& linear) {
+    linear.solver = {.tolerance = tolerance, .preconditioner = preconditioner};
+    s = n.state;
+    stepper->step(*n.scene, h_implicit, s);
+  });
+  Net& n = net(static_cast<int>(state.range(0)));
+  BlockLinearSystem& linear = n.scene->linearized(n.state.x, n.state.v);
+  Vector a, y;
+  n.scene->acceleration(n.state.x, n.state.v, a);
+  linear.stiffness_times(n.state.v, y);
+  a = h_implicit * (a - h_implicit * y);
+  state.counters["iterations"] = static_cast<double>(linear.solve_shifted(h_implicit, a, y).iterations);
+  linear.solver = {};
+}
+
+const bool registered = [] {
+  using benchmark::kMillisecond;
+  using benchmark::RegisterBenchmark;
+  for (const int n : {16, 32, 64, 128, 256, 512, 1024}) {
+    RegisterBenchmark("product", product)->Arg(n)->Unit(kMillisecond);
+    RegisterBenchmark("plain_product", plain_product)->Arg(n)->Unit(kMillisecond);
+    RegisterBenchmark("force", force)->Arg(n)->Unit(kMillisecond);
+    RegisterBenchmark("damped_force", damped_force)->Arg(n)->Unit(kMillisecond);
+    RegisterBenchmark("assembly", assembly)->Arg(n)->Unit(kMillisecond);
+    RegisterBenchmark("linear_substep", linear_substep)->Arg(n)->Unit(kMillisecond);
+    if (n > 128) continue;
+    RegisterBenchmark("implicit_step/ssor/1e-6", implicit_step, Preconditioner::block_ssor, 1e-6)
+        ->Arg(n)
+        ->Unit(kMillisecond);
+    RegisterBenchmark("implicit_step/jacobi/1e-6", implicit_step, Preconditioner::block_jacobi, 1e-6)
+        ->Arg(n)
+        ->Unit(kMillisecond);
+    RegisterBenchmark("implicit_step/jacobi/1e-3", implicit_step, Preconditioner::block_jacobi, 1e-3)
+        ->Arg(n)
+        ->Unit(kMillisecond);
+  }
+  return true;
+}();
+
+}  // namespace

@@ -17,8 +17,8 @@ namespace {
 constexpr Eigen::Index lanes = 8;
 using Lanes = Eigen::Array<double, lanes, 1>;
 
-// A, row by row, from any vector type; nothing where a step is not finite: at a pole (1 + X + Y = 0 for implicit
-// Euler) of any of the oscillators.
+// A, row by row, from any vector type; nothing where a step is not finite: at a pole (1 + X + Y = 0 for
+// implicit Euler) of any of the oscillators.
 template <template <class> class Method, class V>
 std::optional<std::array<V, 4>> amplification(const Oscillator<V>& oscillator, const V& one, const V& zero) {
   Method<V> method;

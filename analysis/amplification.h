@@ -19,7 +19,8 @@ SymbolicAmplification symbolic_amplification(std::string_view method);
 /// A at one point; rows and columns are (x, v). All ∞ at a pole and where the step overflows.
 Eigen::Matrix2d amplification_matrix(std::string_view method, double x, double y);
 
-/// ρ(A) at each (x[i], y[i]), written to rho, ∞ at a pole and where the step overflows; the spans have one length.
+/// ρ(A) at each (x[i], y[i]), written to rho, ∞ at a pole and where the step overflows; the spans have one
+/// length.
 void spectral_radius(std::string_view method, std::span<const double> x, std::span<const double> y,
                      std::span<double> rho);
 

@@ -41,13 +41,14 @@ class Command {
 
   Outcome operator()(const std::string& arguments) const {
     const fs::path err = folder_ / "stderr";
-    const std::string line =
-        "cd '" + folder_.string() + "' && '" SPRINGSTAB_COMMAND "' " + arguments + " 2>'" + err.string() + "'";
+    const std::string line = "cd '" + folder_.string() + "' && '" SPRINGSTAB_COMMAND "' " + arguments +
+                             " 2>'" + err.string() + "'";
     FILE* pipe = popen(line.c_str(), "r");
     BOOST_REQUIRE(pipe);
     Outcome outcome{};
     std::array<char, 4096> buffer;
-    while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) outcome.out.append(buffer.data(), n);
+    while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+      outcome.out.append(buffer.data(), n);
     const int status = pclose(pipe);
     BOOST_REQUIRE(WIFEXITED(status));
     outcome.status = WEXITSTATUS(status);
@@ -115,7 +116,8 @@ BOOST_AUTO_TEST_CASE(global_options_stand_before_or_after_the_subcommand) {
 
 BOOST_AUTO_TEST_CASE(a_region_has_its_cells_and_exact_area_in_any_window) {
   const Outcome run = (*this)(
-      "region explicit-euler --x 0:2 --y -1:3 --nx 40 --ny 50 --raster raster.csv --boundary edge.csv --json");
+      "region explicit-euler --x 0:2 --y -1:3 --nx 40 --ny 50 --raster raster.csv --boundary edge.csv "
+      "--json");
   BOOST_REQUIRE_EQUAL(run.status, 0);
   const Json report = run.json();
   BOOST_TEST(report["cells"] == 2000);
@@ -188,9 +190,9 @@ BOOST_AUTO_TEST_CASE(springs_with_their_own_damping_have_unknown_limits_but_run_
 
 BOOST_AUTO_TEST_CASE(a_run_ends_at_the_duration_and_leaves_its_frames) {
   file("cloth.obj", square);
-  const Outcome run =
-      (*this)("simulate cloth.obj --pin 0,1 --method symplectic-euler --duration 0.5 --step 0.003 --max-step 1 "
-              "--output frames --frames 4 --json");
+  const Outcome run = (*this)(
+      "simulate cloth.obj --pin 0,1 --method symplectic-euler --duration 0.5 --step 0.003 --max-step 1 "
+      "--output frames --frames 4 --json");
   BOOST_REQUIRE_EQUAL(run.status, 0);
   const Json report = run.json();
   BOOST_TEST(report["steps"] == 167);
@@ -214,8 +216,9 @@ BOOST_AUTO_TEST_CASE(a_run_ends_at_the_duration_and_leaves_its_frames) {
 }
 
 BOOST_AUTO_TEST_CASE(divergence_is_status_4_with_its_time) {
-  const Outcome run = (*this)("simulate --grid 8x8 --pin corners --method symplectic-euler --duration 1 --step 0.01 "
-                              "--output frames --json");
+  const Outcome run = (*this)(
+      "simulate --grid 8x8 --pin corners --method symplectic-euler --duration 1 --step 0.01 "
+      "--output frames --json");
   BOOST_TEST(run.status == 4);
   const Json report = run.json();
   BOOST_TEST(report["diverged"] == true);
@@ -229,13 +232,14 @@ BOOST_AUTO_TEST_CASE(divergence_is_status_4_with_its_time) {
 }
 
 BOOST_AUTO_TEST_CASE(designed_damping_makes_explicit_euler_run) {
-  const Outcome run =
-      (*this)("simulate --grid 6x6 --pin first-row --method explicit-euler --duration 0.2 --damping designed --json");
+  const Outcome run = (*this)(
+      "simulate --grid 6x6 --pin first-row --method explicit-euler --duration 0.2 --damping designed --json");
   BOOST_REQUIRE_EQUAL(run.status, 0);
   const Json report = run.json();
   BOOST_TEST(close(report["damping"]["alpha"], report["step"], 1e-9));  // d0 = 0: alpha = h
 
-  file("scene.json", R"({"geometry": {"grid": [6, 6]}, "pins": "first-row", "damping": {"d0": 2, "alpha": "designed"}})");
+  file("scene.json",
+       R"({"geometry": {"grid": [6, 6]}, "pins": "first-row", "damping": {"d0": 2, "alpha": "designed"}})");
   const Json limits = (*this)("limits scene.json --json").json();
   const Json euler = by_name(limits["methods"], "explicit-euler");
   BOOST_TEST(limits["damping"]["alpha"] == "designed");
@@ -316,7 +320,9 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
       {"figures 9", "9"},
       {"figures --plots . 1", "region.gp"},
   };
-  const auto files = [&] { return std::distance(fs::directory_iterator(folder()), fs::directory_iterator()); };
+  const auto files = [&] {
+    return std::distance(fs::directory_iterator(folder()), fs::directory_iterator());
+  };
   const auto before = files();
   for (const auto& [arguments, word] : cases) {
     const Outcome run = (*this)(arguments);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -141,15 +140,20 @@ std::vector<BoundaryArc> StabilityRegion::boundary(const Window& window) const {
 // Where the intervals jump at an X, the boundary runs along that X.
 void StabilityRegion::append_vertical_arcs(const std::vector<Piece>& all, const Window& window,
                                            std::vector<BoundaryArc>& arcs) const {
-  std::set<double> ends;
-  for (const Piece& piece : all) ends.insert({piece.left, piece.right});
+  // Slivers of 1e-12 belong to no piece (see smooth_pieces), so neighbours may end a hair's breadth apart.
+  const auto same = [](double a, double b) { return std::abs(a - b) <= 4e-12 * std::max(1.0, std::abs(a)); };
+  std::vector<double> ends;
+  for (const Piece& piece : all)
+    for (const double x : {piece.left, piece.right})
+      if (std::none_of(ends.begin(), ends.end(), [&](double end) { return same(end, x); })) ends.push_back(x);
   for (const double x : ends) {
-    if (x == window.x_min || x == window.x_max) continue;
+    if (same(x, window.x_min) || same(x, window.x_max)) continue;
     Intervals left, right;
     for (const Piece& piece : all) {
       const std::vector<Column> columns = sample(piece, window);
-      if (piece.right == x && !columns.empty()) left = columns.back().intervals;
-      if (piece.left == x && !columns.empty()) right = columns.front().intervals;
+      if (columns.empty()) continue;
+      if (left.empty() && same(piece.right, x)) left = columns.back().intervals;
+      if (same(piece.left, x)) right = columns.front().intervals;
     }
     for (const auto& parts : {difference(left, right), difference(right, left)})
       for (const auto& [lower, upper] : parts) {

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <random>
 #include <string>
 #include <thread>
@@ -535,6 +536,24 @@ BOOST_AUTO_TEST_CASE(is_below_proves_no_more_than_what_is_true) {
       proved_close += is_below(s, pencil.k0 * (1 + 1e-11));
     }
   BOOST_TEST(proved_close > 50);
+
+  // Mikota's chain in integers: k0 is scale·n² to the last bit, and only rounding could prove it to be
+  // smaller.
+  double least_multiple = 1;
+  for (int n = 1; n <= 20; ++n) {
+    least_multiple = static_cast<double>(std::lcm(static_cast<long>(least_multiple), static_cast<long>(n)));
+    std::vector<Link> links;
+    Vector weight(n);
+    for (int i = 0; i < n; ++i) {
+      links.push_back({i - 1, i, least_multiple * (n - i)});
+      weight[i] = least_multiple / (i + 1);
+    }
+    for (int scale = 1; scale <= 20; ++scale) {
+      const StructuralMatrices s = prepare(scale * stiffness(n, links), diagonal(weight));
+      BOOST_TEST(!is_below(s, scale * n * n), n << " masses, scale " << scale);
+      BOOST_TEST(is_below(s, scale * n * n * (1 + 1e-11)), n << " masses, scale " << scale);
+    }
+  }
   const StructuralMatrices zero = prepare(SparseMatrix(3, 3));
   BOOST_TEST(is_below(zero, 1e-300));
   BOOST_TEST(!is_below(zero, 0));
@@ -718,7 +737,30 @@ BOOST_AUTO_TEST_CASE(general_damping_is_known_to_be_harmless_or_unknown) {
         BOOST_TEST((nothing.status == LimitStatus::unknown));
         BOOST_TEST((!nothing.h_max && !nothing.h_certified));
       }
-      BOOST_TEST(!method_limits(method.name, buckling, rayleigh(0.1, 0.1), 1.5).h_certified);
+    }
+}
+
+BOOST_AUTO_TEST_CASE(a_step_is_certified_by_the_bound_on_k0_and_by_nothing_else) {
+  StiffestMode mode = exactly(100), buckling = mode;
+  mode.upper_bound = 121;
+  buckling.indefinite = true;
+  DampingModel designed = rayleigh(0, 0);
+  designed.kind = DampingModel::Kind::designed;
+  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+      for (const DampingModel& damping : {DampingModel{}, designed}) {
+        const MethodLimits limits = method_limits(method.name, mode, damping, 1.5);
+        if (limits.status == LimitStatus::limited)
+          BOOST_TEST(*limits.h_max / limits.h_certified.value() == 1.1, tolerance(1e-10));
+        BOOST_TEST(limits.h_certified.has_value() == limits.h_max.has_value());
+      }
+      for (const DampingModel& damping : {DampingModel{}, designed, rayleigh(0.1, 0.1)}) {
+        BOOST_TEST(!method_limits(method.name, buckling, damping, 1.5).h_certified);
+        StiffestMode unproved = mode;
+        unproved.upper_bound = infinity;
+        const MethodLimits limits = method_limits(method.name, unproved, damping, 1.5);
+        BOOST_TEST(!limits.h_certified);
+        BOOST_TEST((limits.h_max == method_limits(method.name, mode, damping, 1.5).h_max));
+      }
     }
 }
 

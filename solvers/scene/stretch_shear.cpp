@@ -1,0 +1,112 @@
+#include "solvers/scene/stretch_shear.h"
+
+namespace springstab {
+
+StretchShear::StretchShear(std::shared_ptr<const TriangleConditions> triangles,
+                           const PerTriangleCondition& stiffness, const RestStretch& rest)
+    : triangles_(std::move(triangles)), stiffness_(stiffness), rest_(rest) {}
+
+double StretchShear::energy(const ParticleField& x) const {
+  const Elements<3>& elements = triangles_->elements();
+  CornerVectors<3> at;
+  double density[batch_size];
+  double sum = 0;
+  for (int b = 0; b < elements.batches(); ++b) {
+    const auto& shapes = triangles_->shapes(b);
+    elements.gather(x, b, at);
+    for (int i = 0; i < batch_size; ++i) {
+      const Deformation d = shapes.deformation(at, i);
+      const double c_u = d.l_u - rest_.u, c_v = d.l_v - rest_.v;
+      density[i] = shapes.weight[i] * (stiffness_.stretch_u * c_u * c_u + stiffness_.stretch_v * c_v * c_v +
+                                       stiffness_.shear * d.shear * d.shear);
+    }
+    for (std::size_t i = 0; i < elements.in_batch(b).size(); ++i) sum += density[i];
+  }
+  return sum / 2;
+}
+
+void StretchShear::add_force(const ParticleField& x, double* force) const {
+  const Elements<3>& elements = triangles_->elements();
+  const PerTriangleCondition stiffness = stiffness_;
+  const RestStretch rest = rest_;
+  CornerVectors<3> at, out;
+  for (int b = 0; b < elements.batches(); ++b) {
+    const auto& shapes = triangles_->shapes(b);
+    elements.gather(x, b, at);
+    for (int i = 0; i < batch_size; ++i) {
+      const Deformation d = shapes.deformation(at, i);
+      const PerTriangleCondition k = stiffness.scaled(-shapes.weight[i]);
+      shapes.combine_gradients(
+          d, {k.stretch_u * (d.l_u - rest.u), k.stretch_v * (d.l_v - rest.v), k.shear * d.shear}, i, out);
+    }
+    elements.scatter(out, b, force);
+  }
+}
+
+void StretchShear::add_stiffness_times(const ParticleField& x, const double* u, double scale,
+                                       double* out) const {
+  const Elements<3>& elements = triangles_->elements();
+  const PerTriangleCondition stiffness = stiffness_.scaled(scale);
+  const RestStretch rest = rest_;
+  CornerVectors<3> at, direction, product;
+  for (int b = 0; b < elements.batches(); ++b) {
+    const auto& shapes = triangles_->shapes(b);
+    elements.gather(x, b, at);
+    elements.gather_free(u, b, direction);
+    for (int i = 0; i < batch_size; ++i) {
+      const Deformation d = shapes.deformation(at, i);
+      const PerTriangleCondition k = stiffness.scaled(shapes.weight[i]);
+      const double t_u = k.stretch_u * (1 - rest.u / d.l_u), t_v = k.stretch_v * (1 - rest.v / d.l_v);
+      const double swap = k.shear * d.shear;
+      const Vec3 u_u = shapes.along_u(direction, i), u_v = shapes.along_v(direction, i);
+      const double s_u = (k.stretch_u - t_u) * dot(d.n_u, u_u), s_v = (k.stretch_v - t_v) * dot(d.n_v, u_v);
+      const double s_s = k.shear * (dot(d.w_v, u_u) + dot(d.w_u, u_v));
+      shapes.pull_back(s_u * d.n_u + s_s * d.w_v + t_u * u_u + swap * u_v,
+                       s_v * d.n_v + s_s * d.w_u + t_v * u_v + swap * u_u, i, product);
+    }
+    elements.scatter(product, b, out);
+  }
+}
+
+Couplings StretchShear::couplings() const { return triangles_->elements().couplings(); }
+
+template <StretchShear::Curvature curvature>
+void StretchShear::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix) const {
+  const Elements<3>& elements = triangles_->elements();
+  const PerTriangleCondition stiffness = stiffness_;
+  const RestStretch rest = rest_;
+  CornerVectors<3> at;
+  CornerBlocks<3> blocks;
+  for (int b = 0; b < elements.batches(); ++b) {
+    const auto& shapes = triangles_->shapes(b);
+    elements.gather(x, b, at);
+    for (int i = 0; i < batch_size; ++i) {
+      const Deformation d = shapes.deformation(at, i);
+      const PerTriangleCondition k = stiffness.scaled(shapes.weight[i]);
+      double t_u = k.stretch_u * (1 - rest.u / d.l_u), t_v = k.stretch_v * (1 - rest.v / d.l_v);
+      double swap = k.shear * d.shear, lift = 0;
+      if constexpr (curvature == Curvature::positive) {
+        t_u = t_u < 0 ? 0 : t_u;  // what is not a number stays so
+        t_v = t_v < 0 ? 0 : t_v;
+        swap /= 2;
+        lift = std::abs(swap);
+      }
+      // t (I - nnᵀ) + k nnᵀ = (k - t) nnᵀ + t I
+      const auto h =
+          TriangleConditions::gradient_products(d, {k.stretch_u - t_u, k.stretch_v - t_v, k.shear});
+      shapes.pull_back({h.uu + isotropic(t_u + lift), h.vv + isotropic(t_v + lift), h.uv + isotropic(swap)},
+                       i, blocks);
+    }
+    places_.add(elements, b, blocks, matrix);
+  }
+}
+
+void StretchShear::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
+  add_blocks<Curvature::exact>(x, stiffness);
+}
+
+void StretchShear::add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
+  add_blocks<Curvature::positive>(x, stiffness);
+}
+
+}  // namespace springstab

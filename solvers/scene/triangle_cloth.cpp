@@ -1,0 +1,354 @@
+#include "solvers/scene/triangle_cloth.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <tuple>
+
+#include "solvers/io/input_error.h"
+#include "solvers/scene/bending.h"
+#include "solvers/scene/condition_damping.h"
+
+namespace springstab {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double shortest_side = 1e-60, longest_side = 1e60;  // [m]
+
+std::string shown(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+bool positive(double value) { return value > 0 && std::isfinite(value); }
+
+/// Whether two sides of a triangle, in the plane or in space, span an area.
+template <class V>
+bool has_area(const V& a, const V& b) {
+  const double longest_squared = std::max({a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm()});
+  double doubled;
+  if constexpr (V::RowsAtCompileTime == 3) {
+    doubled = a.cross(b).norm();
+  } else {
+    doubled = std::abs(a.x() * b.y() - a.y() * b.x());
+  }
+  return doubled / 2 > 1e-12 * longest_squared;
+}
+
+// --- meshes: triangles ---
+
+/// Three corners of a face, as places in Mesh::face_vertices.
+struct FaceTriangle {
+  std::array<int, 3> corners;
+  int face;
+};
+
+std::vector<FaceTriangle> fans(const Mesh& mesh) {
+  std::vector<FaceTriangle> triangles;
+  for (int f = 0; f < mesh.faces(); ++f)
+    for (int k = mesh.face_offsets[f] + 1; k + 1 < mesh.face_offsets[f + 1]; ++k)
+      triangles.push_back({{mesh.face_offsets[f], k, k + 1}, f});
+  return triangles;
+}
+
+std::array<Vector3d, 3> positions(const Mesh& mesh, const FaceTriangle& t) {
+  std::array<Vector3d, 3> x;
+  for (int c = 0; c < 3; ++c) x[c] = mesh.vertices[mesh.face_vertices[t.corners[c]]];
+  return x;
+}
+
+void check_triangle(const Mesh& mesh, const FaceTriangle& t) {
+  const auto x = positions(mesh, t);
+  std::string name = "triangle ";
+  for (int c = 0; c < 3; ++c) name += (c ? "-" : "") + std::to_string(mesh.face_vertices[t.corners[c]] + 1);
+  for (int c = 0; c < 3; ++c)
+    if (const double side = (x[(c + 1) % 3] - x[c]).norm(); !(side >= shortest_side && side <= longest_side))
+      fail_at_face(mesh, t.face,
+                   name + " has a side of " + shown(side) + " m, expected a length between 1e-60 and 1e60 m");
+  if (!has_area<Vector3d>(x[1] - x[0], x[2] - x[0]))
+    fail_at_face(mesh, t.face, name + " has no area, expected corners that are not on a line");
+}
+
+// --- meshes: where the triangles lie in (u, v) ---
+
+using TriangleUv = std::array<Vector2d, 3>;
+
+/// Two orthogonal unit vectors.
+struct Frame {
+  Vector3d u, v;
+
+  Vector2d coordinates(const Vector3d& x) const { return {u.dot(x), v.dot(x)}; }
+};
+
+/// The frame of a plane with u along the projection of a direction that is not normal to it. v points to
+/// where the largest of its components is positive.
+Frame frame(const Vector3d& unit_normal, const Vector3d& direction) {
+  const Vector3d u = (direction - unit_normal.dot(direction) * unit_normal).normalized();
+  Vector3d v = unit_normal.cross(u);
+  Eigen::Index largest = 0;
+  v.cwiseAbs().maxCoeff(&largest);
+  return {u, v[largest] < 0 ? Vector3d(-v) : v};
+}
+
+/// The frame of the plane that all vertices lie in, if there is one.
+std::optional<Frame> plane_of(const Mesh& mesh) {
+  Vector3d mean(0, 0, 0);
+  for (const Vector3d& x : mesh.vertices) mean += x / static_cast<double>(mesh.vertices.size());
+  double farthest = 0;
+  for (const Vector3d& x : mesh.vertices) farthest = std::max(farthest, (x - mean).norm());
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const Vector3d& x : mesh.vertices) {
+    const Vector3d d = (x - mean) / farthest;
+    moments += d * d.transpose();
+  }
+  const Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
+  for (const Vector3d& x : mesh.vertices)
+    if (std::abs(normal.dot(x - mean)) > 1e-9 * farthest) return std::nullopt;
+  int axis = 0;  // the longest projection is that of the axis least along the normal
+  for (int other = 1; other < 3; ++other)
+    if (std::abs(normal[other]) < std::abs(normal[axis]) - 1e-9) axis = other;
+  return frame(normal, Vector3d::Unit(axis));
+}
+
+double area(const TriangleUv& uv) {
+  const Vector2d a = uv[1] - uv[0], b = uv[2] - uv[0];
+  return std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
+}
+
+TriangleUv own_plane(const std::array<Vector3d, 3>& x) {
+  const Vector3d normal = (x[1] - x[0]).normalized().cross((x[2] - x[0]).normalized()).normalized();
+  const bool along_x = normal.cross(Vector3d::UnitX()).norm() >= 1e-3;
+  const Frame own = frame(normal, along_x ? Vector3d::UnitX() : Vector3d::UnitZ());
+  return {Vector2d(0, 0), own.coordinates(x[1] - x[0]), own.coordinates(x[2] - x[0])};
+}
+
+std::vector<TriangleUv> own_planes(const Mesh& mesh, const std::vector<FaceTriangle>& triangles) {
+  std::vector<TriangleUv> uv;
+  for (const FaceTriangle& t : triangles) uv.push_back(own_plane(positions(mesh, t)));
+  return uv;
+}
+
+double total_area(const std::vector<TriangleUv>& triangles) {
+  double sum = 0;
+  for (const TriangleUv& uv : triangles) sum += area(uv);
+  return sum;
+}
+
+/// By the texture coordinates, if they will do.
+std::optional<std::vector<TriangleUv>> textured(const Mesh& mesh, const std::vector<FaceTriangle>& triangles,
+                                                std::optional<double> unit) {
+  if (mesh.corner_uv.size() != mesh.face_vertices.size()) return std::nullopt;
+  std::vector<TriangleUv> all;
+  for (const FaceTriangle& t : triangles) {
+    TriangleUv uv;
+    for (int c = 0; c < 3; ++c) uv[c] = mesh.corner_uv[t.corners[c]];
+    if (!has_area<Vector2d>(uv[1] - uv[0], uv[2] - uv[0])) return std::nullopt;
+    all.push_back(uv);
+  }
+  const double scale = unit ? *unit : std::sqrt(total_area(own_planes(mesh, triangles)) / total_area(all));
+  for (TriangleUv& uv : all)
+    for (Vector2d& point : uv) point *= scale;
+  return all;
+}
+
+std::vector<TriangleUv> in_plane(const Mesh& mesh, const std::vector<FaceTriangle>& triangles,
+                                 const Frame& plane) {
+  std::vector<TriangleUv> all;
+  for (const FaceTriangle& t : triangles) {
+    const auto x = positions(mesh, t);
+    all.push_back({Vector2d(0, 0), plane.coordinates(x[1] - x[0]), plane.coordinates(x[2] - x[0])});
+  }
+  return all;
+}
+
+// --- hinges ---
+
+/// The edge low < high of a triangle and its corner opposite to it.
+struct Side {
+  int low, high, opposite;
+};
+
+double rest_angle(const std::vector<Vector3d>& rest, const std::array<int, 4>& particles, bool flat) {
+  CornerVectors<4> x;
+  for (int c = 0; c < 4; ++c) {
+    const Vector3d& p = rest[particles[c]];
+    x.set(c, 0, {p.x(), p.y(), p.z()});
+  }
+  const HingeShape shape = hinge_shape(x, 0);
+  return std::atan2(flat ? 0.0 : shape.sin, shape.cos);
+}
+
+std::vector<Hinge> find_hinges(const std::vector<RestTriangle>& triangles, const std::vector<Vector3d>& rest,
+                               bool flat) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (const auto& [p, uv] : triangles)
+    for (int c = 0; c < 3; ++c) {
+      const auto [low, high] = std::minmax(p[(c + 1) % 3], p[(c + 2) % 3]);
+      sides.push_back({low, high, p[c]});
+    }
+  std::stable_sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+    return std::tie(s.low, s.high) < std::tie(t.low, t.high);
+  });
+  std::vector<Hinge> hinges;
+  for (auto first = sides.begin(), last = first; first != sides.end(); first = last)
+    for (; last != sides.end() && last->low == first->low && last->high == first->high; ++last)
+      for (auto other = first; other != last; ++other) {
+        if (other->opposite == last->opposite) continue;
+        const std::array<int, 4> particles{first->low, first->high, other->opposite, last->opposite};
+        hinges.push_back({particles, rest_angle(rest, particles, flat)});
+      }
+  return hinges;
+}
+
+/// Keeps of the elements what the material needs.
+void finish(TriangleCloth& cloth, std::vector<RestTriangle> triangles, bool flat) {
+  if (cloth.material.stiffness.bending > 0) cloth.hinges = find_hinges(triangles, cloth.rest, flat);
+  if (cloth.material.stiffness.any_in_plane()) cloth.triangles = std::move(triangles);
+}
+
+template <class Element>
+std::vector<Element> select(const std::vector<Element>& elements, const std::vector<int>& number,
+                            int free_count) {
+  std::vector<Element> selected;
+  for (Element element : elements) {
+    for (int& p : element.particles) p = number[p];
+    if (*std::ranges::min_element(element.particles) < free_count) selected.push_back(element);
+  }
+  return selected;
+}
+
+}  // namespace
+
+TriangleCloth make_cloth(const Grid& grid, const ClothMaterial& material) {
+  check(grid, "grid");
+  check(material, "material");
+  if (grid.rows < 2 || grid.columns < 2)
+    throw InputError("grid", 0,
+                     "the grid is " + std::to_string(grid.rows) + " x " + std::to_string(grid.columns) +
+                         ", expected at least 2 x 2 for a cloth of triangles");
+  if (!(grid.spacing >= shortest_side && grid.spacing <= longest_side))
+    throw InputError(
+        "grid", 0,
+        "the spacing is " + shown(grid.spacing) + " m, expected a length between 1e-60 and 1e60 m");
+  const double mass = material.particle_mass.value_or(material.area_density * grid.spacing * grid.spacing);
+  if (!positive(mass))
+    throw InputError("grid", 0,
+                     "each particle weighs " + shown(mass) + " kg, expected a positive finite mass");
+
+  TriangleCloth cloth;
+  cloth.material = material;
+  cloth.mass.assign(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns), mass);
+  cloth.rest.reserve(cloth.mass.size());
+  for (int i = 0; i < grid.rows; ++i)
+    for (int j = 0; j < grid.columns; ++j) cloth.rest.emplace_back(j * grid.spacing, 0, i * grid.spacing);
+  const auto triangle = [&](int a, int b, int c) {
+    const auto uv = [&](int p) { return Vector2d(cloth.rest[p].x(), cloth.rest[p].z()); };
+    return RestTriangle{{a, b, c}, {uv(a), uv(b), uv(c)}};
+  };
+  std::vector<RestTriangle> triangles;
+  for (int i = 0; i + 1 < grid.rows; ++i)
+    for (int j = 0; j + 1 < grid.columns; ++j) {
+      const int p = i * grid.columns + j, q = p + grid.columns;
+      triangles.push_back(triangle(p, p + 1, q + 1));
+      triangles.push_back(triangle(p, q + 1, q));
+    }
+  finish(cloth, std::move(triangles), true);
+  return cloth;
+}
+
+TriangleCloth make_cloth(const Mesh& mesh, const ClothMaterial& material) {
+  check(material, "material");
+  check(mesh);
+  const std::vector<FaceTriangle> parts = fans(mesh);
+  for (const FaceTriangle& t : parts) check_triangle(mesh, t);
+  const std::optional<Frame> plane = plane_of(mesh);
+  std::vector<TriangleUv> uv;
+  if (plane) {
+    uv = in_plane(mesh, parts, *plane);
+  } else if (auto texture = textured(mesh, parts, material.texture_unit)) {
+    uv = std::move(*texture);
+  } else {
+    uv = own_planes(mesh, parts);
+  }
+
+  TriangleCloth cloth;
+  cloth.material = material;
+  cloth.rest = mesh.vertices;
+  cloth.mass.assign(cloth.rest.size(), material.particle_mass.value_or(0));
+  std::vector<RestTriangle> triangles;
+  for (std::size_t t = 0; t < parts.size(); ++t) {
+    RestTriangle triangle{{}, uv[t]};
+    for (int c = 0; c < 3; ++c) {
+      triangle.particles[c] = mesh.face_vertices[parts[t].corners[c]];
+      if (!material.particle_mass)
+        cloth.mass[triangle.particles[c]] += material.area_density * area(uv[t]) / 3;
+    }
+    triangles.push_back(triangle);
+  }
+  for (int v = 0; v < static_cast<int>(cloth.mass.size()); ++v)
+    if (!positive(cloth.mass[v]))
+      fail_at_vertex(mesh, v,
+                     "has a mass of " + shown(cloth.mass[v]) +
+                         " kg from the area of its faces, expected a positive finite one");
+  finish(cloth, std::move(triangles), plane.has_value());
+  return cloth;
+}
+
+void check(const ClothMaterial& material, const std::string& source, long line) {
+  const auto require = [&](bool good, const std::string& name, double value, const std::string& expected) {
+    if (!good) throw InputError(source, line, name + " is " + shown(value) + ", expected " + expected);
+  };
+  require(positive(material.area_density), "area density", material.area_density,
+          "a positive number of kg/m²");
+  if (const auto& mass = material.particle_mass)
+    require(positive(*mass), "particle mass", *mass, "a positive number of kg");
+  if (const auto& unit = material.texture_unit)
+    require(positive(*unit), "texture unit", *unit, "a positive number of m");
+  for (const double rest : {material.rest_stretch.u, material.rest_stretch.v})
+    require(positive(rest), "rest stretch", rest, "a positive number");
+  const std::string per = material.scaling == AreaScaling::continuum ? "/m" : "/m³";
+  const struct {
+    double PerCondition::*of;
+    std::string name, stiffness_unit, damping_unit;
+  } conditions[] = {{&PerCondition::stretch_u, "stretch u", "N" + per, "N·s" + per},
+                    {&PerCondition::stretch_v, "stretch v", "N" + per, "N·s" + per},
+                    {&PerCondition::shear, "shear", "N" + per, "N·s" + per},
+                    {&PerCondition::bending, "bending", "N·m", "N·m·s"}};
+  for (const auto& c : conditions) {
+    const double k = material.stiffness.*c.of, d = material.damping.*c.of;
+    require(k == 0 || positive(k), c.name + " stiffness", k,
+            "zero or a positive number of " + c.stiffness_unit);
+    require(d == 0 || positive(d), c.name + " damping", d, "zero or a positive number of " + c.damping_unit);
+    require(d == 0 || k > 0, c.name + " damping", d,
+            "zero, since without stiffness there is no such condition");
+  }
+}
+
+ClothTerms make_terms(const TriangleCloth& cloth, const std::vector<int>& number, int free_count) {
+  ClothTerms terms;
+  const ClothMaterial& material = cloth.material;
+  if (const auto triangles = select(cloth.triangles, number, free_count); !triangles.empty()) {
+    const auto shared = std::make_shared<TriangleConditions>(triangles, material.scaling, free_count);
+    if (material.stiffness.any_in_plane())
+      terms.elastic.push_back(
+          std::make_unique<StretchShear>(shared, material.stiffness.in_plane(), material.rest_stretch));
+    if (material.damping.any_in_plane())
+      terms.damping.push_back(std::make_unique<StretchShearDamping>(shared, material.damping.in_plane()));
+  }
+  if (const auto hinges = select(cloth.hinges, number, free_count); !hinges.empty()) {
+    const auto shared = std::make_shared<HingeAngles>(hinges, free_count);
+    if (material.stiffness.bending > 0)
+      terms.elastic.push_back(std::make_unique<Bending>(shared, material.stiffness.bending));
+    if (material.damping.bending > 0)
+      terms.damping.push_back(std::make_unique<BendingDamping>(shared, material.damping.bending));
+  }
+  return terms;
+}
+
+}  // namespace springstab

@@ -1,15 +1,14 @@
 // `springstab simulate`: runs a scene or a system of matrices with a step that is known to be stable.
 #include <cmath>
 #include <csignal>
-#include <ctime>
 #include <iostream>
 
 #include "analysis/method_limits.h"
 #include "experiments/experiments.h"
 #include "experiments/frames.h"
+#include "experiments/measured_run.h"
 #include "experiments/output.h"
 #include "experiments/step_chooser.h"
-#include "solvers/counting.h"
 #include "solvers/io/input_error.h"
 #include "solvers/simulation.h"
 
@@ -29,12 +28,6 @@ class StopOnInterrupt {
  private:
   void (*previous_)(int);
 };
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 void check(const SimulateOptions& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
@@ -127,29 +120,26 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   const double h = plan->h;
   if (Scene* scene = subject.scene()) scene->solver().tolerance = options.cg_tolerance;
 
-  State<Vector> state = subject.initial_state(common.seed);
-  CountingSystem system(subject.system());
-  const auto stepper = make_stepper(options.method, plan->steps_per_linearization);
-  const EnergyWatch watch = chooser.watch(state);
-  const double energy_before = system.kinetic_energy(state.v) + system.potential_energy(state.x);
+  const State<Vector> start = subject.initial_state(common.seed);
+  System& system = subject.system();
   Recorder recorder(subject, options);
   Progress progress("simulating", common.quiet);
   const StopOnInterrupt interrupt_guard;
-  const double cpu_start = cpu_seconds();
-  const SimulationResult result = simulate(
-      system, *stepper, h, plan->steps, watch, state,
+  const auto [result, counts, cpu, state] = measured_run(
+      system, options.method, h, plan->steps, plan->steps_per_linearization, chooser.watch(start), start,
       [&](const SimulationResult& so_far, const State<Vector>& s) {
         recorder.record(so_far.time, s);
         if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
         return stop_requested == 0;
       },
       chooser.policy());
-  const double cpu = cpu_seconds() - cpu_start;
   recorder.finish();
 
   const bool diverged = result.status == StepStatus::diverged;
-  const Counts& counts = system.counts();
-  const double energy_after = system.kinetic_energy(state.v) + system.potential_energy(state.x);
+  const auto energy = [&](const State<Vector>& s) {
+    return system.kinetic_energy(s.v) + system.potential_energy(s.x);
+  };
+  const double energy_before = energy(start), energy_after = energy(state);
   Json report{{"method", options.method},
               {"status", stop_requested ? "interrupted" : outcome(result.status)},
               {"step", h},

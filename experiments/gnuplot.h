@@ -1,0 +1,18 @@
+// Has gnuplot draw: one script, its settings, and pictures that are never half-drawn.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace springstab {
+
+/// gnuplot's string literal.
+std::string gnuplot_literal(const std::string& s);
+
+/// Runs `script` with the settings "name=value; ..." as BASE.svg and BASE.png, moved into place when
+/// complete; the script finds them as `type` and `output_file`. Returns the two paths. Throws InputError if
+/// there is no gnuplot, std::runtime_error if it fails.
+std::vector<std::string> draw(const std::string& script, const std::string& settings,
+                              const std::string& base);
+
+}  // namespace springstab

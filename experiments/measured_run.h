@@ -1,0 +1,31 @@
+// One run of a system by a method, with what it cost: CPU seconds, and counts that no clock changes.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "solvers/counting.h"
+#include "solvers/simulation.h"
+
+namespace springstab {
+
+/// CPU time of this process [s].
+double cpu_seconds();
+
+/// Where and how times were taken, for the foot of a figure: processor, compiler, flags, commit.
+std::string provenance();
+
+struct MeasuredRun {
+  SimulationResult result;
+  Counts counts;
+  double cpu_seconds = 0;  // of the steps, the observer and the policy
+  State<Vector> end;       // the last good state
+};
+
+/// Takes `steps` steps of h from `start`; the rest as in simulate(). One linearization of a linearized method
+/// serves `steps_per_linearization` steps.
+MeasuredRun measured_run(System& system, std::string_view method, double h, long steps,
+                         long steps_per_linearization, const EnergyWatch& watch, const State<Vector>& start,
+                         const Observer& observe = {}, const StepPolicy& policy = {});
+
+}  // namespace springstab

@@ -24,7 +24,7 @@ void add_input(CLI::App& command, InputOptions& input) {
       ->type_name("NxM");
   command.add_option("--spacing", input.spacing, "distance s of the grid's particles (default 0.025)")
       ->type_name("[m]");
-  command.add_option("--material", input.material, "default, soft or stiff")->type_name("NAME");
+  command.add_option("--material", input.material, "default, soft, stiff (springs) or baraff-witkin")->type_name("NAME");
   command.add_option("--pin", input.pin, "none, first-row, corners or particle numbers like 0,5-9")
       ->type_name("SPEC");
   command.add_option("--stiffness", input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
@@ -91,7 +91,7 @@ void add_limits(CLI::App& app, const CommonOptions& common, LimitsOptions& o, st
 }
 
 void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o, std::string& damping,
-                  std::function<int()>& chosen) {
+                  std::string& hessian, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("simulate", "Runs a scene, a mesh or matrices");
   add_input(*command, o.input);
   command->add_option("--method", o.method, "one of " + method_names())->required()->type_name("NAME");
@@ -107,6 +107,11 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
       ->capture_default_str();
   command->add_option("--damping", damping, "own, or designed: alpha fitted to the step")
       ->check(CLI::IsMember({"own", "designed"}))
+      ->capture_default_str();
+  command
+      ->add_option("--hessian", hessian,
+                   "exact, or projected to be positive semidefinite, in implicit and linearized methods")
+      ->check(CLI::IsMember({"exact", "projected"}))
       ->capture_default_str();
   command->add_option("--output", o.output, "folder for the frames (matrices: trajectory.csv)")
       ->type_name("DIR");
@@ -131,6 +136,7 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
   command->callback([&] {
     chosen = [&] {
       o.designed_damping = damping == "designed";
+      o.projected_hessian = hessian == "projected";
       return run_simulate(common, o);
     };
   });
@@ -160,7 +166,7 @@ int run_command(int argc, const char* const* argv) {
   LimitsOptions limits;
   SimulateOptions simulate;
   FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
-  std::string damping = "own";
+  std::string damping = "own", hessian = "exact";
   std::function<int()> chosen;
 
   CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
@@ -180,7 +186,7 @@ int run_command(int argc, const char* const* argv) {
   add_methods(app, common, chosen);
   add_region(app, common, region, chosen);
   add_limits(app, common, limits, chosen);
-  add_simulate(app, common, simulate, damping, chosen);
+  add_simulate(app, common, simulate, damping, hessian, chosen);
   add_figures(app, common, figures, chosen);
 
   try {

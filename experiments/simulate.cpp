@@ -106,6 +106,10 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   find_method(options.method);
   Subject subject(options.input);
   if (options.designed_damping) subject.design_damping();
+  if (options.projected_hessian) {
+    if (!subject.scene()) throw InputError("--hessian", 0, "'projected' is for scenes, expected 'exact'");
+    subject.scene()->set_hessian(Hessian::projected);
+  }
   StepChooser chooser(subject, common, options);
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) {

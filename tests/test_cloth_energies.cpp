@@ -245,7 +245,7 @@ constexpr bool is_bending(const Term&) {
   return std::is_same_v<Term, Bending>;
 }
 
-/// Visits the two elastic terms, which have no common base for their projected matrices.
+/// Visits the two elastic terms.
 template <class Visit>
 void for_each_term(const Model& model, const Visit& visit) {
   BOOST_TEST_CONTEXT("stretch and shear") { visit(model.stretch_shear()); }
@@ -863,7 +863,7 @@ BOOST_AUTO_TEST_CASE(what_has_no_coefficient_is_not_constructed) {
   std::iota(number.begin(), number.end(), 0);
   const auto terms = [&](const ClothMaterial& m) { return make_terms(make_cloth(grid, m), number, 20); };
   const auto counts = [&](const PerCondition& k, const PerCondition& d) {
-    const ClothTerms t = terms({.stiffness = k, .damping = d});
+    const SceneTerms t = terms({.stiffness = k, .damping = d});
     return std::make_pair(t.elastic.size(), t.damping.size());
   };
   using Counts = std::pair<std::size_t, std::size_t>;
@@ -885,10 +885,10 @@ BOOST_AUTO_TEST_CASE(what_has_no_coefficient_is_not_constructed) {
   };
   BOOST_TEST(pairs(terms({.stiffness = {1, 1, 1, 0}}).elastic[0]->couplings()) == 4u * 4 + 3u * 5 + 3u * 4);
   for (int i = 0; i < 20; ++i) number[i] = i < 10 ? 10 + i : i - 10;  // two rows pinned
-  const ClothTerms held = make_terms(make_cloth(grid, material), number, 10);
+  const SceneTerms held = make_terms(make_cloth(grid, material), number, 10);
   BOOST_TEST(pairs(held.elastic[0]->couplings()) == 2u * 4 + 5u + 4u);
   for (int i = 0; i < 20; ++i) number[i] = i;
-  const ClothTerms fixed = make_terms(make_cloth(grid, material), number, 0);
+  const SceneTerms fixed = make_terms(make_cloth(grid, material), number, 0);
   BOOST_TEST(fixed.elastic.empty());
   BOOST_TEST(fixed.damping.empty());
 }
@@ -899,7 +899,7 @@ BOOST_AUTO_TEST_CASE(the_terms_of_a_cloth_have_its_coefficients) {
   m.rest_stretch = {0.9, 1.2};
   const TriangleCloth cloth = make_cloth(sheet(random), m);
   const Model model(cloth, some_pins);
-  const ClothTerms terms = make_terms(cloth, model.number, model.free_count);
+  const SceneTerms terms = make_terms(cloth, model.number, model.free_count);
   const Vector x = model.coordinates(poses(cloth.rest, random)[1].x), v = random.vector(x.size());
   BOOST_REQUIRE_EQUAL(terms.elastic.size(), 2u);
   BOOST_REQUIRE_EQUAL(terms.damping.size(), 2u);

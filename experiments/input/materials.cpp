@@ -42,20 +42,14 @@ std::string expected_one_of(const std::string& word, const std::vector<std::stri
   return nearest.empty() ? text : text + " (did you mean " + springstab::quoted(nearest) + "?)";
 }
 
-SpringMaterial named_material(const std::string& name, const std::string& source, long line) {
-  SpringMaterial material;
-  if (name == "default") return material;
-  if (name == "soft") {
-    material.stiffness = {20, 10, 2};
-    return material;
-  }
-  if (name == "stiff") {
-    material.stiffness = {20000, 10000, 200};
-    return material;
-  }
+Material named_material(const std::string& name, const std::string& source, long line) {
+  if (name == "default") return SpringMaterial{};
+  if (name == "soft") return SpringMaterial{.stiffness = {20, 10, 2}};
+  if (name == "stiff") return SpringMaterial{.stiffness = {20000, 10000, 200}};
+  if (name == "baraff-witkin") return ClothMaterial{};
   throw InputError(source, line,
                    "unknown material " + springstab::quoted(name) + ", " +
-                       expected_one_of(name, {"default", "soft", "stiff"}));
+                       expected_one_of(name, {"default", "soft", "stiff", "baraff-witkin"}));
 }
 
 }  // namespace springstab

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "solvers/scene/spring_cloth.h"
+#include "solvers/scene/triangle_cloth.h"
 
 namespace springstab {
 
@@ -38,9 +39,12 @@ struct InitialDescription {
 /// A grid, or the path of an OBJ file.
 using Geometry = std::variant<Grid, std::string>;
 
+/// Springs, or Baraff's and Witkin's triangles.
+using Material = std::variant<SpringMaterial, ClothMaterial>;
+
 struct SceneDescription {
   Geometry geometry;
-  SpringMaterial material;
+  Material material;
   Pins pins;
   Eigen::Vector3d gravity{0, -9.81, 0};  // [m/s²]
   RayleighDescription damping;
@@ -51,7 +55,7 @@ struct SceneDescription {
 Pins parse_pins(const std::string& text, const std::string& source, long line);
 
 /// The materials known by name. Throws InputError(source, line, ...) naming the nearest known one.
-SpringMaterial named_material(const std::string& name, const std::string& source, long line);
+Material named_material(const std::string& name, const std::string& source, long line);
 
 /// The half of a message about an unknown word that says what was expected:
 /// "expected 'soft' or 'stiff' (did you mean 'soft'?)", the nearest word only if it is near.

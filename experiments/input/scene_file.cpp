@@ -267,22 +267,86 @@ class SceneReader {
     return grid;
   }
 
-  SpringMaterial material(const Json& json) const {
+  std::string text(const Json& json, const std::string& expected) const {
+    if (json.kind != Json::Kind::string) wrong(json, expected);
+    return json.text;
+  }
+
+  Material material(const Json& json) const {
     if (json.kind == Json::Kind::string) return named_material(json.text, source_, json.line);
     if (json.kind != Json::Kind::object) wrong(json, "the name of a material or an object");
-    expect_members(json,
-                   {"name", "area_density", "particle_mass", "structural", "shear", "bending", "damping"});
-    SpringMaterial material;
-    if (const Json* name = find(json, "name")) {
-      if (name->kind != Json::Kind::string) wrong(*name, "the name of a material");
-      material = named_material(name->text, source_, name->line);
+    Material start;
+    if (const Json* model = find(json, "model")) {
+      const std::string name = text(*model, "'springs' or 'baraff-witkin'");
+      if (name != "springs" && name != "baraff-witkin")
+        wrong(*model,
+              expected_one_of(name, {"springs", "baraff-witkin"}).substr(std::string("expected ").size()));
+      if (name == "baraff-witkin") start = ClothMaterial{};
     }
+    if (const Json* name = find(json, "name")) {
+      const std::size_t model = start.index();
+      start = named_material(text(*name, "the name of a material"), source_, name->line);
+      if (find(json, "model") && start.index() != model) wrong(*name, "the name of a material of that model");
+    }
+    return std::visit([&](auto material) -> Material { return read_material(json, material); }, start);
+  }
+
+  template <class M>
+  void read_weight(const Json& json, M& material) const {
     read_number(json, "area_density", Sign::positive, material.area_density);
-    read_number(json, "particle_mass", Sign::positive, material.particle_mass);
+    if (const Json* mass = find(json, "particle_mass"))
+      material.particle_mass = number(*mass, Sign::positive);
+  }
+
+  SpringMaterial read_material(const Json& json, SpringMaterial material) const {
+    expect_members(json, {"model", "name", "area_density", "particle_mass", "structural", "shear", "bending",
+                          "damping"});
+    read_weight(json, material);
     read_per_kind(json, material.stiffness);
     if (const Json* damping = find(json, "damping")) {
       expect_members(*damping, {"structural", "shear", "bending"});
       read_per_kind(*damping, material.damping);
+      check(material, source_, damping->line);
+    }
+    return material;
+  }
+
+  /// A number for both directions of the cloth, or [along u, along v].
+  void read_directions(const Json& object, std::string_view key, Sign sign, double& u, double& v) const {
+    const Json* member = find(object, key);
+    if (!member) return;
+    if (member->kind != Json::Kind::array) {
+      u = v = number(*member, sign);
+      return;
+    }
+    if (member->items.size() != 2)
+      fail(member->line, member->name + " has " + std::to_string(member->items.size()) +
+                             " entries, expected a number or [along u, along v]");
+    u = number(member->items[0], sign);
+    v = number(member->items[1], sign);
+  }
+
+  void read_per_condition(const Json& object, PerCondition& values) const {
+    read_directions(object, "stretch", Sign::not_negative, values.stretch_u, values.stretch_v);
+    read_number(object, "shear", Sign::not_negative, values.shear);
+    read_number(object, "bending", Sign::not_negative, values.bending);
+  }
+
+  ClothMaterial read_material(const Json& json, ClothMaterial material) const {
+    expect_members(json, {"model", "name", "area_density", "particle_mass", "stretch", "shear", "bending",
+                          "damping", "area_scaling", "rest_stretch", "texture_unit"});
+    read_weight(json, material);
+    read_per_condition(json, material.stiffness);
+    if (const Json* scaling = find(json, "area_scaling")) {
+      const std::string name = text(*scaling, "'continuum' or 'original'");
+      if (name != "continuum" && name != "original") wrong(*scaling, "'continuum' or 'original'");
+      material.scaling = name == "original" ? AreaScaling::original : AreaScaling::continuum;
+    }
+    read_directions(json, "rest_stretch", Sign::positive, material.rest_stretch.u, material.rest_stretch.v);
+    if (const Json* unit = find(json, "texture_unit")) material.texture_unit = number(*unit, Sign::positive);
+    if (const Json* damping = find(json, "damping")) {
+      expect_members(*damping, {"stretch", "shear", "bending"});
+      read_per_condition(*damping, material.damping);
       check(material, source_, damping->line);
     }
     return material;

@@ -72,6 +72,15 @@ SceneDescription describe(const InputOptions& options) {
   return description;
 }
 
+template <class Geometry>
+SpringNet make(const Geometry& geometry, const SpringMaterial& material) {
+  return make_net(geometry, material);
+}
+template <class Geometry>
+TriangleCloth make(const Geometry& geometry, const ClothMaterial& material) {
+  return make_cloth(geometry, material);
+}
+
 // Names the file in what the matrix library says.
 template <class Build>
 auto naming(const std::string& source, Build build) {
@@ -121,29 +130,35 @@ void Subject::build_matrices(const InputOptions& options) {
   });
 }
 
+Subject::Subject(const SceneDescription& description) { build_scene(description); }
+
 void Subject::build_scene(const SceneDescription& description) {
-  SpringNet net;
-  const Grid* grid = std::get_if<Grid>(&description.geometry);
-  std::string source = "--grid";
-  if (grid) {
-    net = make_net(*grid, description.material);
+  if (const Grid* grid = std::get_if<Grid>(&description.geometry)) {
     faces_ = grid_faces(*grid);
+    std::visit([&](const auto& material) { place(make(*grid, material), description, grid, "--grid"); },
+               description.material);
   } else {
-    source = std::get<std::string>(description.geometry);
-    const Mesh mesh = read_obj(source);
-    net = make_net(mesh, description.material);
+    const std::string& file = std::get<std::string>(description.geometry);
+    const Mesh mesh = read_obj(file);
     for (int f = 0; f < mesh.faces(); ++f) faces_.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
+    std::visit([&](const auto& material) { place(make(mesh, material), description, nullptr, file); },
+               description.material);
   }
+}
+
+template <class Cloth>
+void Subject::place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
+                    const std::string& source) {
   rayleigh_ = description.damping;
   initial_ = description.initial;
-  const std::vector<int> pinned = resolve(description.pins, grid, static_cast<int>(net.rest.size()));
+  const std::vector<int> pinned = resolve(description.pins, grid, static_cast<int>(cloth.rest.size()));
   const std::string pins_source = description.pins.source.empty() ? source : description.pins.source;
   scene_ = naming(pins_source, [&] {
-    return std::make_unique<Scene>(net, pinned, description.gravity,
+    return std::make_unique<Scene>(cloth, pinned, description.gravity,
                                    RayleighDamping{rayleigh_.d0, rayleigh_.alpha.value_or(0)});
   });
   std::vector<Eigen::Vector3d> places;
-  for (int i : pinned) places.push_back(initial_.stretch.cwiseProduct(net.rest[i]));
+  for (int i : pinned) places.push_back(initial_.stretch.cwiseProduct(cloth.rest[i]));
   scene_->place_pinned(places);
 }
 

@@ -28,6 +28,7 @@ class Subject {
  public:
   /// Throws InputError or std::invalid_argument when the input is unusable.
   explicit Subject(const InputOptions& options);
+  explicit Subject(const SceneDescription& description);
 
   System& system();
   Scene* scene() { return scene_.get(); }               // null for matrices
@@ -51,6 +52,9 @@ class Subject {
 
  private:
   void build_scene(const SceneDescription& description);
+  template <class Cloth>
+  void place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
+             const std::string& source);
   void build_matrices(const InputOptions& options);
 
   std::unique_ptr<Scene> scene_;

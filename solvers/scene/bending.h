@@ -17,6 +17,8 @@ class Bending final : public ElasticTerm {
   /// stiffness: k [N·m], not negative.
   Bending(std::shared_ptr<const HingeAngles> hinges, double stiffness);
 
+  std::string_view name() const override { return "hinges that resist bending"; }
+  int size() const override { return hinges_->elements().size(); }
   double energy(const ParticleField& x) const override;
   void add_force(const ParticleField& x, double* force) const override;
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
@@ -25,7 +27,7 @@ class Bending final : public ElasticTerm {
 
   /// stiffness += the Gauss-Newton part k ∇θ∇θᵀ, positive semidefinite as a sum of squares; it is K where Δ =
   /// 0.
-  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const;
+  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.

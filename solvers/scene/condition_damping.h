@@ -17,6 +17,8 @@ class StretchShearDamping final : public DampingTerm {
   StretchShearDamping(std::shared_ptr<const TriangleConditions> triangles,
                       const PerTriangleCondition& damping);
 
+  std::string_view name() const override { return "triangles that damp stretch and shear"; }
+  int size() const override { return triangles_->elements().size(); }
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
   Couplings couplings() const override;
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;
@@ -37,6 +39,8 @@ class BendingDamping final : public DampingTerm {
   /// damping: k_d [N·m·s], not negative.
   BendingDamping(std::shared_ptr<const HingeAngles> hinges, double damping);
 
+  std::string_view name() const override { return "hinges that damp bending"; }
+  int size() const override { return hinges_->elements().size(); }
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
   Couplings couplings() const override;
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;

@@ -5,25 +5,13 @@
 #include <string>
 
 #include "solvers/scene/springs.h"
+#include "solvers/scene/triangle_cloth.h"
 
 namespace springstab {
 namespace {
 
 void append(std::vector<double>& list, const Eigen::Vector3d& p) {
   list.insert(list.end(), {p.x(), p.y(), p.z()});
-}
-
-// The springs with a property, renumbered, without those between two pinned particles.
-template <class Wanted>
-std::vector<Spring> select(const std::vector<Spring>& springs, const std::vector<int>& number, int free_count,
-                           Wanted wanted) {
-  std::vector<Spring> selected;
-  for (Spring s : springs) {
-    s.i = number[s.i];
-    s.j = number[s.j];
-    if (wanted(s) && std::min(s.i, s.j) < free_count) selected.push_back(s);
-  }
-  return selected;
 }
 
 template <class Terms>
@@ -38,10 +26,30 @@ Couplings all_couplings(const Terms& terms) {
 
 }  // namespace
 
-Scene::Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
+template <class Cloth>
+Scene::Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
              RayleighDamping damping)
     : gravity_(gravity), damping_(damping) {
-  const int n = static_cast<int>(net.rest.size());
+  std::vector<double> mass = number_particles(cloth.rest, cloth.mass, pinned);
+  terms_ = make_terms(cloth, number_, free_count_);
+  const Couplings stiffness = all_couplings(terms_.elastic);
+  if (terms_.damping.empty()) {
+    linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness);
+  } else {
+    linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness,
+                                                  all_couplings(terms_.damping));
+    for (const auto& term : terms_.damping) term->bind(*linear_->own_damping());
+  }
+  for (const auto& term : terms_.elastic) term->bind(linear_->stiffness());
+}
+
+template Scene::Scene(const SpringNet&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
+template Scene::Scene(const TriangleCloth&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
+
+// Free particles first; returns their masses.
+std::vector<double> Scene::number_particles(const std::vector<Eigen::Vector3d>& rest,
+                                            const std::vector<double>& mass, const std::vector<int>& pinned) {
+  const int n = static_cast<int>(rest.size());
   std::vector<bool> is_pinned(n, false);
   for (int i : pinned) {
     if (i < 0 || i >= n)
@@ -54,29 +62,15 @@ Scene::Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::
     throw std::invalid_argument("all particles are pinned, expected at least one that can move");
 
   number_.resize(n);
-  std::vector<double> mass;
+  std::vector<double> free_mass;
   int next_free = 0, next_pinned = free_count_;
   for (int i = 0; i < n; ++i) {
-    append(is_pinned[i] ? pinned_ : rest_, net.rest[i]);
-    if (!is_pinned[i]) mass.push_back(net.mass[i]);
+    append(is_pinned[i] ? pinned_ : rest_, rest[i]);
+    if (!is_pinned[i]) free_mass.push_back(mass[i]);
     number_[i] = is_pinned[i] ? next_pinned++ : next_free++;
   }
   pinned_velocity_.assign(pinned_.size(), 0.0);
-
-  auto elastic = select(net.springs, number_, free_count_, [](const Spring& s) { return s.stiffness > 0; });
-  auto damped = select(net.springs, number_, free_count_, [](const Spring& s) { return s.damping > 0; });
-  if (!elastic.empty()) elastic_terms_.push_back(std::make_unique<Springs>(elastic, free_count_));
-  if (!damped.empty()) damping_terms_.push_back(std::make_unique<AxialDamping>(damped, free_count_));
-
-  const Couplings stiffness = all_couplings(elastic_terms_);
-  if (damping_terms_.empty()) {
-    linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness);
-  } else {
-    linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness,
-                                                  all_couplings(damping_terms_));
-    for (const auto& term : damping_terms_) term->bind(*linear_->own_damping());
-  }
-  for (const auto& term : elastic_terms_) term->bind(linear_->stiffness());
+  return free_mass;
 }
 
 void Scene::set_damping(const RayleighDamping& damping) {
@@ -114,14 +108,14 @@ ParticleField Scene::position_field(const Vector& x) const { return {x.data(), p
 void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   const ParticleField positions = position_field(x);
   out.setZero(size());
-  for (const auto& term : elastic_terms_) {
+  for (const auto& term : terms_.elastic) {
     if (damping_.alpha == 0) {
       term->add_force(positions, out.data());
     } else {
       term->add_damped_force(positions, v.data(), damping_.alpha, out.data());
     }
   }
-  for (const auto& term : damping_terms_)
+  for (const auto& term : terms_.damping)
     term->add_force(positions, {v.data(), pinned_velocity_.data(), free_count_}, out.data());
   const std::vector<double>& inverse_mass = linear_->inverse_mass();
   for (long i = 0; i < free_count_; ++i)
@@ -132,17 +126,23 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
 BlockLinearSystem& Scene::linearized(const Vector& x, const Vector&) {
   const ParticleField positions = position_field(x);
   linear_->stiffness().set_zero();
-  for (const auto& term : elastic_terms_) term->add_stiffness(positions, linear_->stiffness());
+  for (const auto& term : terms_.elastic) {
+    if (hessian_ == Hessian::projected) {
+      term->add_projected_stiffness(positions, linear_->stiffness());
+    } else {
+      term->add_stiffness(positions, linear_->stiffness());
+    }
+  }
   if (BlockSparseMatrix* damping = linear_->own_damping()) {
     damping->set_zero();
-    for (const auto& term : damping_terms_) term->add_damping(positions, *damping);
+    for (const auto& term : terms_.damping) term->add_damping(positions, *damping);
   }
   return *linear_;
 }
 
 double Scene::elastic_energy(const Vector& x) const {
   double energy = 0;
-  for (const auto& term : elastic_terms_) energy += term->energy(position_field(x));
+  for (const auto& term : terms_.elastic) energy += term->energy(position_field(x));
   return energy;
 }
 

@@ -7,30 +7,45 @@
 #include <vector>
 
 #include "solvers/linear/block_linear_system.h"
-#include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/terms.h"
 #include "solvers/system.h"
 
 namespace springstab {
+
+struct SpringNet;
+struct TriangleCloth;
+
+/// Of the elastic energy, in a linearization.
+enum class Hessian {
+  exact,
+  projected,  // positive semidefinite, element by element; other eigenvalues where cloth is compressed
+};
 
 /// M x'' = f_elastic(x) + M g - d0 M v - alpha K(x) v - C(x) v. Rayleigh damping uses the exact K at the
 /// positions that a force is evaluated at; the change of the damping matrices with x is neglected in the
 /// linearization.
 class Scene final : public System {
  public:
-  /// A net with the given particles pinned at their rest positions. `pinned` ascends without repeats.
-  /// Throws std::invalid_argument for an index out of range and when nothing is left to move.
-  Scene(const SpringNet& net, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
+  /// A SpringNet or a TriangleCloth with the given particles pinned at their rest positions. `pinned` ascends
+  /// without repeats. Throws std::invalid_argument for an index out of range and when nothing is left to
+  /// move.
+  template <class Cloth>
+  Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
         RayleighDamping damping);
 
   int particles() const { return static_cast<int>(number_.size()); }
   int free_particles() const { return free_count_; }
   const RayleighDamping& damping() const { return damping_; }
-  bool has_own_damping() const { return !damping_terms_.empty(); }
+  bool has_own_damping() const { return !terms_.damping.empty(); }
+  const SceneTerms& terms() const { return terms_; }
   double total_free_mass() const;
   const Eigen::Vector3d& gravity() const { return gravity_; }
 
   void set_damping(const RayleighDamping& damping);
+  /// Which K linearized() gives, also for Rayleigh damping in the linear system; forces always have the exact
+  /// one. Exact unless set.
+  void set_hessian(Hessian hessian) { hessian_ = hessian; }
+  Hessian hessian() const { return hessian_; }
 
   /// The free particles at rest, not moving.
   State<Vector> rest_state() const;
@@ -50,6 +65,8 @@ class Scene final : public System {
   double potential_energy(const Vector& x) override;
 
  private:
+  std::vector<double> number_particles(const std::vector<Eigen::Vector3d>& rest,
+                                       const std::vector<double>& mass, const std::vector<int>& pinned);
   ParticleField position_field(const Vector& x) const;
 
   int free_count_ = 0;
@@ -59,8 +76,8 @@ class Scene final : public System {
   std::vector<double> pinned_velocity_;  // zeros
   Eigen::Vector3d gravity_;
   RayleighDamping damping_;
-  std::vector<std::unique_ptr<ElasticTerm>> elastic_terms_;
-  std::vector<std::unique_ptr<DampingTerm>> damping_terms_;
+  Hessian hessian_ = Hessian::exact;
+  SceneTerms terms_;
   std::unique_ptr<BlockLinearSystem> linear_;
 };
 

@@ -21,6 +21,11 @@ Stiffness stiffness_of(double stiffness, double rest_length, double squared_leng
   return {transverse, (stiffness - transverse) * inverse * inverse};
 }
 
+Stiffness projected_stiffness_of(double stiffness, double rest_length, double squared_length) {
+  const Stiffness s = stiffness_of(stiffness, rest_length, squared_length);
+  return s.a < 0 ? Stiffness{0, stiffness / squared_length} : s;  // what is not a number stays so
+}
+
 using Four = Eigen::Array4d;
 using FourAt = Eigen::Map<Four>;
 
@@ -224,19 +229,29 @@ void Springs::add_damped_force(const ParticleField& x, const double* v, double a
   });
 }
 
-void Springs::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
+template <class StiffnessOf>
+void Springs::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix,
+                         const StiffnessOf& block_of) const {
   pairs_.for_each_batch([&](int begin, int count) {
     ParticlePairs::Vectors d;
     ParticlePairs::Numbers a, b;
     pairs_.gather(x, begin, count, d);
     for (int k = 0; k < count; ++k) {
-      const Stiffness s = stiffness_of(stiffness_[begin + k], rest_length_[begin + k], dot(d, d, k));
+      const Stiffness s = block_of(stiffness_[begin + k], rest_length_[begin + k], dot(d, d, k));
       a[k] = s.a;
       b[k] = s.b;
     }
     pairs_.keep(a, b, d, begin, count);
   });
-  pairs_.add_kept_blocks(stiffness);
+  pairs_.add_kept_blocks(matrix);
+}
+
+void Springs::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
+  add_blocks(x, stiffness, [](auto... of) { return stiffness_of(of...); });
+}
+
+void Springs::add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
+  add_blocks(x, stiffness, [](auto... of) { return projected_stiffness_of(of...); });
 }
 
 AxialDamping::AxialDamping(const std::vector<Spring>& springs, int free_count) : pairs_(springs, free_count) {
@@ -268,6 +283,21 @@ void AxialDamping::add_damping(const ParticleField& x, BlockSparseMatrix& dampin
     pairs_.keep(a, b, d, begin, count);
   });
   pairs_.add_kept_blocks(damping);
+}
+
+SceneTerms make_terms(const SpringNet& net, const std::vector<int>& number, int free_count) {
+  std::vector<Spring> elastic, damped;
+  for (Spring s : net.springs) {
+    s.i = number[s.i];
+    s.j = number[s.j];
+    if (std::min(s.i, s.j) >= free_count) continue;
+    if (s.stiffness > 0) elastic.push_back(s);
+    if (s.damping > 0) damped.push_back(s);
+  }
+  SceneTerms terms;
+  if (!elastic.empty()) terms.elastic.push_back(std::make_unique<Springs>(elastic, free_count));
+  if (!damped.empty()) terms.damping.push_back(std::make_unique<AxialDamping>(damped, free_count));
+  return terms;
 }
 
 }  // namespace springstab

@@ -73,6 +73,8 @@ class Springs final : public ElasticTerm {
  public:
   Springs(const std::vector<Spring>& springs, int free_count);
 
+  std::string_view name() const override { return "springs"; }
+  int size() const override { return pairs_.size(); }
   double energy(const ParticleField& x) const override;
   void add_force(const ParticleField& x, double* force) const override;
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
@@ -80,8 +82,13 @@ class Springs final : public ElasticTerm {
   Couplings couplings() const override { return pairs_.couplings(); }
   void bind(const BlockSparseMatrix& stiffness) override { pairs_.bind(stiffness); }
   void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
+  /// Without the transverse stiffness k_s (1 - l0/l) where a spring is shorter than at rest.
+  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
 
  private:
+  template <class StiffnessOf>
+  void add_blocks(const ParticleField& x, BlockSparseMatrix& matrix, const StiffnessOf& block_of) const;
+
   ParticlePairs pairs_;
   std::vector<double> stiffness_, rest_length_;
 };
@@ -91,6 +98,8 @@ class AxialDamping final : public DampingTerm {
  public:
   AxialDamping(const std::vector<Spring>& springs, int free_count);
 
+  std::string_view name() const override { return "dampers along springs"; }
+  int size() const override { return pairs_.size(); }
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
   Couplings couplings() const override { return pairs_.couplings(); }
   void bind(const BlockSparseMatrix& damping) override { pairs_.bind(damping); }
@@ -100,5 +109,9 @@ class AxialDamping final : public DampingTerm {
   ParticlePairs pairs_;
   std::vector<double> damping_;
 };
+
+/// The terms of a net in a scene whose numbers of the particles are number[i], free ones first, `free_count`
+/// of them. Springs between pinned particles alone and terms without springs are left out.
+SceneTerms make_terms(const SpringNet& net, const std::vector<int>& number, int free_count);
 
 }  // namespace springstab

@@ -24,6 +24,8 @@ class StretchShear final : public ElasticTerm {
   StretchShear(std::shared_ptr<const TriangleConditions> triangles, const PerTriangleCondition& stiffness,
                const RestStretch& rest = {});
 
+  std::string_view name() const override { return "triangles that resist stretch and shear"; }
+  int size() const override { return triangles_->elements().size(); }
   double energy(const ParticleField& x) const override;
   void add_force(const ParticleField& x, double* force) const override;
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
@@ -35,7 +37,7 @@ class StretchShear final : public ElasticTerm {
   /// shear, ± the sign of C_s. Each summand is positive semidefinite in (w_u, w_v), so their sum is, and so
   /// is its pull-back (∂w/∂x)ᵀ H (∂w/∂x). It is K itself where nothing is compressed along u or v and nothing
   /// sheared.
-  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const;
+  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.

@@ -2,6 +2,8 @@
 // evaluation, plain loops inside. A scene without a term does not have the object.
 #pragma once
 
+#include <memory>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,6 +30,9 @@ using Couplings = std::vector<std::pair<int, int>>;
 class ElasticTerm {
  public:
   virtual ~ElasticTerm() = default;
+  /// What it is made of, in the plural, and how many of them act on free particles.
+  virtual std::string_view name() const = 0;
+  virtual int size() const = 0;
   virtual double energy(const ParticleField& x) const = 0;
   /// force -= ∂E/∂x [N].
   virtual void add_force(const ParticleField& x, double* force) const = 0;
@@ -45,12 +50,17 @@ class ElasticTerm {
   virtual void bind(const BlockSparseMatrix&) {}
   /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
   virtual void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;
+  /// stiffness += a positive semidefinite matrix that is K(x) wherever that is positive semidefinite element
+  /// by element. Its spectrum is another than K's.
+  virtual void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;
 };
 
 /// A damping force -C(x) v of the material, with C symmetric positive semidefinite.
 class DampingTerm {
  public:
   virtual ~DampingTerm() = default;
+  virtual std::string_view name() const = 0;
+  virtual int size() const = 0;
   /// force -= C(x) v [N].
   virtual void add_force(const ParticleField& x, const ParticleField& v, double* force) const = 0;
   virtual Couplings couplings() const = 0;
@@ -58,6 +68,12 @@ class DampingTerm {
   virtual void bind(const BlockSparseMatrix&) {}
   /// damping += C(x) [N·s/m]. The change of C with x is neglected, as everywhere.
   virtual void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const = 0;
+};
+
+/// All that acts on a scene's particles but gravity and Rayleigh damping.
+struct SceneTerms {
+  std::vector<std::unique_ptr<ElasticTerm>> elastic;
+  std::vector<std::unique_ptr<DampingTerm>> damping;
 };
 
 }  // namespace springstab

@@ -330,8 +330,8 @@ void check(const ClothMaterial& material, const std::string& source, long line) 
   }
 }
 
-ClothTerms make_terms(const TriangleCloth& cloth, const std::vector<int>& number, int free_count) {
-  ClothTerms terms;
+SceneTerms make_terms(const TriangleCloth& cloth, const std::vector<int>& number, int free_count) {
+  SceneTerms terms;
   const ClothMaterial& material = cloth.material;
   if (const auto triangles = select(cloth.triangles, number, free_count); !triangles.empty()) {
     const auto shared = std::make_shared<TriangleConditions>(triangles, material.scaling, free_count);

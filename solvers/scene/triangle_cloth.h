@@ -76,14 +76,9 @@ TriangleCloth make_cloth(const Mesh& mesh, const ClothMaterial& material);
 /// and damping not negative, all finite, and nothing is damped that has stiffness 0.
 void check(const ClothMaterial& material, const std::string& source, long line = 0);
 
-struct ClothTerms {
-  std::vector<std::unique_ptr<ElasticTerm>> elastic;
-  std::vector<std::unique_ptr<DampingTerm>> damping;
-};
-
 /// The terms of a cloth in a scene whose numbers of the particles are number[i], free ones first,
 /// `free_count` of them. Elements between pinned particles alone and terms without elements or coefficients
 /// are left out.
-ClothTerms make_terms(const TriangleCloth& cloth, const std::vector<int>& number, int free_count);
+SceneTerms make_terms(const TriangleCloth& cloth, const std::vector<int>& number, int free_count);
 
 }  // namespace springstab

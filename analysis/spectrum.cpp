@@ -110,10 +110,15 @@ bool is_below(const StructuralMatrices& s, double sigma) {
   return false;
 }
 
-StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
   const LinearOperator op = scaled_stiffness(s);
   StiffestMode mode = s.size() <= dense_limit ? dense_spectrum(op) : arpack_spectrum(op, options);
   mode.upper_bound = std::numeric_limits<double>::infinity();
+  return mode;
+}
+
+StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+  StiffestMode mode = estimated_stiffest_mode(s, options);
   if (is_diagonal(s.mass)) {
     const SparseMatrix matrix = scaled(s.stiffness, inverse_root_mass(s));
     mode.upper_bound = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));

@@ -31,6 +31,9 @@ struct StiffestMode {
 /// bound is Gershgorin's and definiteness is not tested.
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
 
+/// The same without a proof, which costs more than k0 itself: the bound is ∞, definiteness is not tested.
+StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
+
 /// Whether a Cholesky factorization proves that every eigenvalue of K' is below sigma.
 bool is_below(const StructuralMatrices& s, double sigma);
 

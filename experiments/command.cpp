@@ -24,7 +24,8 @@ void add_input(CLI::App& command, InputOptions& input) {
       ->type_name("NxM");
   command.add_option("--spacing", input.spacing, "distance s of the grid's particles (default 0.025)")
       ->type_name("[m]");
-  command.add_option("--material", input.material, "default, soft, stiff (springs) or baraff-witkin")->type_name("NAME");
+  command.add_option("--material", input.material, "default, soft, stiff (springs) or baraff-witkin")
+      ->type_name("NAME");
   command.add_option("--pin", input.pin, "none, first-row, corners or particle numbers like 0,5-9")
       ->type_name("SPEC");
   command.add_option("--stiffness", input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")

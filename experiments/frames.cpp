@@ -1,5 +1,7 @@
 #include "experiments/frames.h"
 
+#include <filesystem>
+
 #include "experiments/output.h"
 
 namespace springstab {
@@ -30,13 +32,22 @@ void write_vtk(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
   }
 }
 
+std::string frame_path(const std::string& folder, const std::string& format, int frame) {
+  return folder + text("/frame_%05d.%s", frame, format.c_str());
+}
+
 }  // namespace
 
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces) {
-  OutputFile file(folder + text("/frame_%05d.%s", frame, format.c_str()));
+  OutputFile file(frame_path(folder, format, frame));
   (format == "vtk" ? write_vtk : write_obj)(file.stream(), positions, faces);
   file.commit();
+}
+
+void remove_frame(const std::string& folder, const std::string& format, int frame) {
+  std::error_code ignored;
+  std::filesystem::remove(frame_path(folder, format, frame), ignored);
 }
 
 }  // namespace springstab

@@ -12,4 +12,7 @@ namespace springstab {
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces);
 
+/// Deletes such a file if it is there.
+void remove_frame(const std::string& folder, const std::string& format, int frame);
+
 }  // namespace springstab

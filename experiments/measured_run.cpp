@@ -28,15 +28,15 @@ std::string provenance() {
   return processor() + "; " SPRINGSTAB_COMPILER "; springstab " SPRINGSTAB_VERSION ", " SPRINGSTAB_COMMIT;
 }
 
-MeasuredRun measured_run(System& system, std::string_view method, double h, long steps,
-                         long steps_per_linearization, const EnergyWatch& watch, const State<Vector>& start,
-                         const Observer& observe, const StepPolicy& policy) {
+MeasuredRun measured_run(System& system, std::string_view method, const StepPlan& plan,
+                         const EnergyWatch& watch, const State<Vector>& start, const Observer& observe,
+                         const StepPolicy& policy) {
   CountingSystem counted(system);
-  const auto stepper = make_stepper(method, steps_per_linearization);
+  const auto stepper = make_stepper(method);
   MeasuredRun run;
   run.end = start;
   const double before = cpu_seconds();
-  run.result = simulate(counted, *stepper, h, steps, watch, run.end, observe, policy);
+  run.result = simulate(counted, *stepper, plan, watch, run.end, observe, policy);
   run.cpu_seconds = cpu_seconds() - before;
   run.counts = counted.counts();
   return run;

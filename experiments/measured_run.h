@@ -19,13 +19,12 @@ struct MeasuredRun {
   SimulationResult result;
   Counts counts;
   double cpu_seconds = 0;  // of the steps, the observer and the policy
-  State<Vector> end;       // the last good state
+  State<Vector> end;       // where it ended
 };
 
-/// Takes `steps` steps of h from `start`; the rest as in simulate(). One linearization of a linearized method
-/// serves `steps_per_linearization` steps.
-MeasuredRun measured_run(System& system, std::string_view method, double h, long steps,
-                         long steps_per_linearization, const EnergyWatch& watch, const State<Vector>& start,
-                         const Observer& observe = {}, const StepPolicy& policy = {});
+/// Carries out the plan from `start`, as simulate() does.
+MeasuredRun measured_run(System& system, std::string_view method, const StepPlan& plan,
+                         const EnergyWatch& watch, const State<Vector>& start, const Observer& observe = {},
+                         const StepPolicy& policy = {});
 
 }  // namespace springstab

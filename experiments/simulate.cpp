@@ -1,4 +1,5 @@
 // `springstab simulate`: runs a scene or a system of matrices with a step that is known to be stable.
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <iostream>
@@ -56,24 +57,32 @@ class Recorder {
   }
 
   void record(double t, const State<Vector>& state) {
-    if (options_.output.empty() || t < next_time()) return;
+    if (options_.output.empty()) return;
+    while (!frames_.empty() && t < frames_.back().t) {  // a divergence was undone
+      due_ = frames_.back().due;
+      frames_.pop_back();
+    }
+    if (t < next_time()) return;
     if (Scene* scene = subject_.scene()) {
-      write_frame(options_.output, options_.format, written_, scene->positions(state.x), subject_.faces());
+      write_frame(options_.output, options_.format, written(), scene->positions(state.x), subject_.faces());
     } else {
       csv_->stream() << t << ',' << subject_.system().kinetic_energy(state.v) << ','
                      << subject_.system().potential_energy(state.x);
       for (double x : state.x) csv_->stream() << ',' << x;
       csv_->stream() << '\n';
     }
-    ++written_;
+    frames_.push_back({t, due_});
+    most_ = std::max(most_, written());
     while (next_time() <= t && due_ <= options_.frames) ++due_;
   }
 
   void finish() {
     if (csv_) csv_->commit();
+    for (int frame = written(); frame < most_; ++frame)  // of what was undone and not reached again
+      remove_frame(options_.output, options_.format, frame);
   }
 
-  int written() const { return written_; }
+  int written() const { return static_cast<int>(frames_.size()); }
 
  private:
   // A hair early: the time of a step is a rounded sum.
@@ -82,7 +91,12 @@ class Recorder {
   Subject& subject_;
   const SimulateOptions& options_;
   std::optional<OutputFile> csv_;
-  int due_ = 0, written_ = 0;
+  struct Frame {
+    double t;  // [s]
+    int due;
+  };
+  std::vector<Frame> frames_;
+  int due_ = 0, most_ = 0;
 };
 
 const char* outcome(StepStatus status) {
@@ -130,7 +144,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   Progress progress("simulating", common.quiet);
   const StopOnInterrupt interrupt_guard;
   const auto [result, counts, cpu, state] = measured_run(
-      system, options.method, h, plan->steps, plan->steps_per_linearization, chooser.watch(start), start,
+      system, options.method, *plan, chooser.watch(start), start,
       [&](const SimulationResult& so_far, const State<Vector>& s) {
         recorder.record(so_far.time, s);
         if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
@@ -149,7 +163,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
               {"step", h},
               {"steps", result.steps},
               {"diverged", diverged},
-              {"diverged_at", diverged ? number(result.time + chooser.present_step()) : Json()},
+              {"diverged_at", diverged ? number(result.failed_at) : Json()},
               {"cpu_seconds", cpu},
               {"counts",
                {{"force_evaluations", counts.force_evaluations},
@@ -175,7 +189,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     if (stop_requested) {
       std::cout << text("interrupted at t = %.6g s\n", result.time);
     } else if (diverged) {
-      std::cout << text("diverged at t = %.6g s\n", result.time + chooser.present_step());
+      std::cout << text("diverged at t = %.6g s\n", result.failed_at);
     } else if (result.status != StepStatus::done) {
       std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
                         outcome(result.status));
@@ -183,8 +197,11 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
       std::cout << "done\n";
     }
     if (chooser.rollbacks() > 0)
-      std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s\n",
-                        chooser.rollbacks(), chooser.present_step());
+      std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s%s\n",
+                        chooser.rollbacks(), chooser.present_step(),
+                        find_method(options.method).linearized
+                            ? text(", linearized every %.6g s", chooser.present_relinearize()).c_str()
+                            : "");
     if (chooser.halved_steps() > 0)
       std::cout << text("%ld steps were halved because 1 + hD' + h²K' was not positive definite\n",
                         chooser.halved_steps());

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double default_max_step = 0.01;  // [s], where nothing limits the step
 constexpr double tight_watch = 3;          // times the speed that energy conservation allows
+constexpr double tight_gain = 1;           // times the energy that all of that speed would be
+constexpr double quick_tolerance = 1e-4;  // of k0 on the way: far below what the safety factor covers
 constexpr long patience = 20, progress = 10;
 
 }  // namespace
@@ -21,10 +23,11 @@ StepChooser::StepChooser(Subject& subject, const CommonOptions& common, const Si
       common_(common),
       options_(options),
       method_(find_method(options.method)),
-      designed_(subject.damping().kind == DampingModel::Kind::designed) {}
+      designed_(subject.damping().kind == DampingModel::Kind::designed),
+      relinearize_(options.relinearize) {}
 
-std::optional<double> StepChooser::recommended(const State<Vector>& state) {
-  const StiffestMode k0 = stiffest_mode(subject_.structure(state), {.seed = common_.seed});
+std::optional<double> StepChooser::recommended(const State<Vector>& state, double tolerance) {
+  const StiffestMode k0 = estimated_stiffest_mode(subject_.structure(state), {.tolerance = tolerance, .seed = common_.seed});
   if (!k0.converged) return reason_ = "k0 did not converge", std::nullopt;
   DampingModel damping = subject_.damping();
   if (designed_) damping.kind = DampingModel::Kind::designed;
@@ -46,7 +49,7 @@ StepPlan StepChooser::plan(double largest_step, double duration) {
   const auto count = [](double total, double part) {
     return std::max(1.0, std::ceil(total / part * (1 - 1e-12)));
   };
-  const double linearizations = method_.linearized ? count(duration, options_.relinearize) : 1;
+  const double linearizations = method_.linearized ? count(duration, relinearize_) : 1;
   const double steps = count(duration / linearizations, largest_step);
   if (linearizations * steps > 1e15)
     throw InputError("--step", 0,
@@ -61,45 +64,47 @@ StepPlan StepChooser::plan(double largest_step, double duration) {
 
 std::optional<StepPlan> StepChooser::first_plan() {
   const std::optional<double> step =
-      options_.step ? options_.step : recommended(subject_.initial_state(common_.seed));
+      options_.step ? options_.step : recommended(subject_.initial_state(common_.seed), 1e-10);
   if (!step) return std::nullopt;
   return plan(*step, options_.duration);
 }
 
 EnergyWatch StepChooser::watch(const State<Vector>& start) {
   EnergyWatch watch = subject_.energy_watch(start);
-  if (!options_.step) watch.slack = tight_watch;
+  if (!options_.step) {
+    watch.slack = tight_watch;
+    watch.largest_gain = tight_gain;
+  }
   return watch;
 }
 
-std::optional<NewPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {
+std::optional<StepPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {
   if (options_.step || !subject_.scene()) return std::nullopt;
-  const bool first = failures_in_a_row_ == 1;
-  double step = recommended(state).value_or(h_ / 2);
-  if (step >= h_ * (1 - 1e-9)) step = method_.linearized && first ? h_ : h_ / 2;
+  double step = recommended(state, quick_tolerance).value_or(h_ / 2);
+  if (step >= h_ * (1 - 1e-9)) step = method_.linearized && relinearize_ > h_ ? h_ : h_ / 2;
+  if (method_.linearized) relinearize_ = std::max(relinearize_ / 2, step);
   ++rollbacks_;
-  const StepPlan next = plan(step, options_.duration - time);
-  return NewPlan{next.h, next.steps, true};
+  return plan(step, options_.duration - time);
 }
 
 StepPolicy StepChooser::policy() {
-  return
-      [this](const SimulationResult& so_far, const State<Vector>& state, double h) -> std::optional<NewPlan> {
-        failures_in_a_row_ = so_far.steps - steps_at_last_failure_ < progress ? failures_in_a_row_ + 1 : 1;
-        steps_at_last_failure_ = so_far.steps;
-        if (failures_in_a_row_ > patience) return std::nullopt;
-        switch (so_far.status) {
-          case StepStatus::diverged:
-            return after_divergence(so_far.time, state);
-          case StepStatus::not_positive_definite:
-            ++halved_steps_;
-            return NewPlan{h / 2, 2, false};
-          case StepStatus::not_converged:
-          case StepStatus::done:
-            break;
-        }
-        return std::nullopt;
-      };
+  return [this](const SimulationResult& so_far, const State<Vector>& state,
+                const StepPlan& failed) -> std::optional<StepPlan> {
+    failures_in_a_row_ = so_far.steps - steps_at_last_failure_ < progress ? failures_in_a_row_ + 1 : 1;
+    steps_at_last_failure_ = so_far.steps;
+    if (failures_in_a_row_ > patience) return std::nullopt;
+    switch (so_far.status) {
+      case StepStatus::diverged:
+        return after_divergence(so_far.time, state);
+      case StepStatus::not_positive_definite:
+        ++halved_steps_;
+        return StepPlan{failed.h / 2, 2};
+      case StepStatus::not_converged:
+      case StepStatus::done:
+        break;
+    }
+    return std::nullopt;
+  };
 }
 
 }  // namespace springstab

@@ -10,18 +10,13 @@
 
 namespace springstab {
 
-struct StepPlan {
-  double h;                          // [s]
-  long steps;                        // to the end
-  long steps_per_linearization = 1;  // of linearized methods
-};
-
 /// The paper's rule made a policy. A step that the user gave is kept, come what may. Otherwise the step is
-/// the recommended one, and after a divergence the last result is discarded, k0 is computed where the run
-/// stands, and the step (and designed damping) chosen for it; if the stiffness has not grown, a linearized
-/// method first tries again with K and D of the present state, and then the step is halved. When 1 + hD' +
-/// h²K' is not positive definite, the step is taken as two halves (paper §5.2). After 20 failures within 10
-/// steps' progress it gives up.
+/// the recommended one, and a divergence that the watch sees is undone: the run is back at its last
+/// checkpoint, k0 is computed for the state there, and the step (and designed damping) chosen for it. A
+/// linearized method also linearizes twice as often from there on, since frozen forces lead away from the
+/// true ones; where neither has shortened anything, the step is halved. When 1 + hD' + h²K' is not positive
+/// definite, the step is taken as two halves (paper §5.2). After 20 failures within 10 steps' progress it
+/// gives up.
 class StepChooser {
  public:
   StepChooser(Subject& subject, const CommonOptions& common, const SimulateOptions& options);
@@ -37,13 +32,14 @@ class StepChooser {
   StepPolicy policy();
 
   double present_step() const { return h_; }
+  double present_relinearize() const { return relinearize_; }
   long rollbacks() const { return rollbacks_; }
   long halved_steps() const { return halved_steps_; }
 
  private:
-  std::optional<double> recommended(const State<Vector>& state);
+  std::optional<double> recommended(const State<Vector>& state, double tolerance);
   StepPlan plan(double largest_step, double duration);
-  std::optional<NewPlan> after_divergence(double time, const State<Vector>& state);
+  std::optional<StepPlan> after_divergence(double time, const State<Vector>& state);
 
   Subject& subject_;
   const CommonOptions& common_;
@@ -52,6 +48,7 @@ class StepChooser {
   bool designed_;
   std::string reason_;
   double h_ = 0;
+  double relinearize_;  // h_m [s]
   long rollbacks_ = 0, halved_steps_ = 0;
   long failures_in_a_row_ = 0, steps_at_last_failure_ = -1;
 };

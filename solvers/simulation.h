@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "solvers/stepper.h"
@@ -9,47 +10,58 @@
 
 namespace springstab {
 
+/// How a run goes on: `steps` steps of h. In a linearized method one linearization serves
+/// `steps_per_linearization` of them; the others have no use for the number.
+struct StepPlan {
+  double h;  // [s]
+  long steps;
+  long steps_per_linearization = 1;
+};
+
 /// Tells divergence from motion by energy. In a passive system under constant gravity g the kinetic energy
 /// obeys
-///     √T(t) <= √E0 + g √(m/2) t,   E0 = kinetic plus elastic energy at the start,
+///     √T(t) <= √E0 + g √(m/2) t =: √B(t),   E0 = kinetic plus elastic energy at the start,
 /// since elastic energy is never negative, damping takes energy and gravity gives at most g √(2mT) of power.
 /// A run that exceeds this speed `slack` times has diverged. (Stable linear steps may exceed the energy bound
 /// themselves, near a double eigenvalue by a factor of hundreds; a diverging run grows without bound.)
+/// The total energy never grows; a run that has gained `largest_gain` times B(t) is about to diverge. That
+/// takes an evaluation of the energy, so it is asked at checkpoints only, and not at all where nothing limits
+/// the gain.
 struct EnergyWatch {
   double initial_energy = 0;  // E0 [J]
   double gravity = 0;         // g [m/s²]
   double mass = 0;            // m of all that moves [kg]
   double slack = 1e3;
+  double initial_total = 0;  // kinetic plus potential energy at the start [J]
+  double largest_gain = std::numeric_limits<double>::infinity();
 
   bool diverged(double kinetic_energy, double t) const;
+  bool gained(double total_energy, double t) const;
 };
 
 struct SimulationResult {
-  long steps = 0;                        // completed
+  long steps = 0;                        // completed and kept
   double time = 0;                       // the sum of their h [s]
   StepStatus status = StepStatus::done;  // of the last step; diverged also when the watch said so
+  double failed_at = 0;                  // time that the last failed step would have reached [s]
   long failures = 0;                     // steps that were discarded and taken again otherwise
 };
 
-/// Sees every good state, the first included; returning false stops the run.
+/// Sees every good state, the first included; returning false stops the run. After a divergence that was
+/// undone, time is back at the last checkpoint.
 using Observer = std::function<bool(const SimulationResult& so_far, const State<Vector>& state)>;
 
-/// How to go on after a failed step, from the last good state.
-struct NewPlan {
-  double h;
-  long steps;
-  bool to_the_end;  // replaces the rest of the run; otherwise the failed step only, and the old h follows
-};
+/// Asked after a failed step (so_far.status says why) with the state from which to go on. It may also change
+/// the system, as when new damping goes with the new step. The plan replaces the rest of the run after a
+/// divergence, and otherwise the failed step alone. Nothing means to give up.
+using StepPolicy = std::function<std::optional<StepPlan>(const SimulationResult& so_far,
+                                                         const State<Vector>& state, const StepPlan& failed)>;
 
-/// Asked after a failed step (so_far.status says why) with the last good state. It may also change the
-/// system, as when new damping goes with the new step. Nothing means to give up.
-using StepPolicy = std::function<std::optional<NewPlan>(const SimulationResult& so_far,
-                                                        const State<Vector>& state, double h)>;
-
-/// Takes `steps` steps of h from `state`. After anything but `done` the state is the last good one: neither
-/// non-finite nor implausible states reach the observer. With a policy a failed step is discarded (paper
-/// §4, 2.3), the method forgets what it had linearized, and the run goes on with the new plan.
-SimulationResult simulate(System& system, Stepper& stepper, double h, long steps, const EnergyWatch& watch,
+/// Carries out the plan from `state`. Checkpoints are taken at whole linearizations, at least 16 steps apart,
+/// and at the end. After a divergence the run is back at the last of them (paper §4, 2.3: the latest result
+/// is discarded): there it ends, or goes on, linearized anew, with what the policy plans. A failed solve
+/// leaves the state as it was before the step. Neither non-finite nor implausible states reach the observer.
+SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {});
 
 }  // namespace springstab

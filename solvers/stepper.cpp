@@ -11,18 +11,14 @@ namespace {
 
 template <class Method>
 concept KeepsLinearization = requires(Method& method) {
-  method.forget();
+  method.restart(1L);
 };
 
 template <template <class> class Method>
 class StepperOf final : public Stepper {
  public:
-  explicit StepperOf(long steps_per_linearization) {
-    if constexpr (KeepsLinearization<Method<Vector>>)
-      method_.set_steps_per_linearization(steps_per_linearization);
-  }
-  void forget() override {
-    if constexpr (KeepsLinearization<Method<Vector>>) method_.forget();
+  void restart(long steps_per_linearization) override {
+    if constexpr (KeepsLinearization<Method<Vector>>) method_.restart(steps_per_linearization);
   }
   StepStatus step(System& system, double h, State<Vector>& state) override {
     return method_.step(system, h, state);
@@ -34,14 +30,12 @@ class StepperOf final : public Stepper {
 
 struct Registry {
   std::vector<MethodInfo> infos;
-  std::vector<std::unique_ptr<Stepper> (*)(long)> makers;
+  std::vector<std::unique_ptr<Stepper> (*)()> makers;
 
   Registry() {
     Methods::for_each([this]<template <class> class Method>() {
       infos.push_back(Method<Vector>::info);
-      makers.push_back([](long steps_per_linearization) -> std::unique_ptr<Stepper> {
-        return std::make_unique<StepperOf<Method>>(steps_per_linearization);
-      });
+      makers.push_back([]() -> std::unique_ptr<Stepper> { return std::make_unique<StepperOf<Method>>(); });
     });
   }
 
@@ -66,8 +60,8 @@ std::span<const MethodInfo> all_methods() { return registry().infos; }
 
 const MethodInfo& find_method(std::string_view name) { return registry().infos[registry().index(name)]; }
 
-std::unique_ptr<Stepper> make_stepper(std::string_view name, long steps_per_linearization) {
-  return registry().makers[registry().index(name)](steps_per_linearization);
+std::unique_ptr<Stepper> make_stepper(std::string_view name) {
+  return registry().makers[registry().index(name)]();
 }
 
 }  // namespace springstab

@@ -17,8 +17,10 @@ class Stepper {
   virtual ~Stepper() = default;
   /// Advances the state by h, or says why it did not and leaves the state as it was.
   virtual StepStatus step(System& system, double h, State<Vector>& state) = 0;
-  /// Drops what is kept from step to step (a linearization), as after going back to an earlier state.
-  virtual void forget() = 0;
+  /// Drops what is kept from step to step (a linearization), as after going back to an earlier state. In a
+  /// linearized method one linearization serves `steps_per_linearization` >= 1 steps from now on; the others
+  /// have no use for the number.
+  virtual void restart(long steps_per_linearization) = 0;
 };
 
 /// All methods, in the order of the list.
@@ -27,8 +29,8 @@ std::span<const MethodInfo> all_methods();
 /// The method of that name; throws std::invalid_argument that lists the known names.
 const MethodInfo& find_method(std::string_view name);
 
-/// A stepper for the method of that name; throws like find_method. In a linearized method one linearization
-/// serves `steps_per_linearization` >= 1 steps; the others have no use for the number.
-std::unique_ptr<Stepper> make_stepper(std::string_view name, long steps_per_linearization = 1);
+/// A stepper for the method of that name; throws like find_method. A linearized method linearizes at every
+/// step until it is told otherwise.
+std::unique_ptr<Stepper> make_stepper(std::string_view name);
 
 }  // namespace springstab

@@ -214,6 +214,36 @@ BOOST_AUTO_TEST_CASE(the_stiffness_matrix_is_the_differenced_force) {
   });
 }
 
+// Σ over springs of k_s nnᵀ and of the positive part of k_s (1 - l0/l)(I - nnᵀ), each positive semidefinite.
+BOOST_AUTO_TEST_CASE(a_projected_stiffness_is_positive_semidefinite_and_exact_where_nothing_is_compressed) {
+  for_each_pose([](const SpringNet& net, const Pose& pose, Random&) {
+    Scene scene(net, some_pins, {0, 0, 0}, {});
+    const Vector x = take(scene, pose, some_pins);
+    const Dense exact = stiffness(scene, x);
+    scene.set_hessian(Hessian::projected);
+    const Dense projected = stiffness(scene, x);
+    BOOST_TEST(smallest_eigenvalue(projected) > -1e-13 * projected.norm());
+    BOOST_TEST(smallest_eigenvalue(projected - exact) > -1e-13 * exact.norm());
+    if (pose.name == "stretched") BOOST_TEST((projected == exact));
+    if (pose.name == "compressed") {
+      BOOST_TEST((projected - exact).norm() > 1e-2 * exact.norm());
+      Dense axial = Dense::Zero(21, 21);  // all that is left of a net in which every spring is too short
+      for (const Spring& s : net.springs) {
+        const Vector3d n = (pose.x[s.i] - pose.x[s.j]).normalized();
+        Dense along = Dense::Zero(21, 1);
+        along.block<3, 1>(3 * s.i, 0) = n;
+        along.block<3, 1>(3 * s.j, 0) = -n;
+        axial += s.stiffness * along * along.transpose();
+      }
+      Scene loose(net, {}, {0, 0, 0}, {});
+      loose.set_hessian(Hessian::projected);
+      Vector all(21);
+      for (int i = 0; i < 7; ++i) all.segment<3>(3 * i) = pose.x[i];
+      check_equal(stiffness(loose, all), axial, 1e-13);
+    }
+  });
+}
+
 // The damping force is linear in v: any difference is exact.
 BOOST_AUTO_TEST_CASE(the_damping_matrix_is_the_differenced_force) {
   for_each_pose([](const SpringNet& net, const Pose& pose, Random& random) {
@@ -224,7 +254,7 @@ BOOST_AUTO_TEST_CASE(the_damping_matrix_is_the_differenced_force) {
     // Without springs' stiffness, lest its rounding covers the damping's.
     std::vector<Spring> dampers = net.springs;
     for (Spring& s : dampers) s.stiffness = 0;
-    Scene damped({net.rest, net.mass, dampers}, some_pins, {0, 0, 0}, {});
+    Scene damped(SpringNet{net.rest, net.mass, dampers}, some_pins, {0, 0, 0}, {});
     take(damped, pose, some_pins);
     const auto f = [&](const Vector& at) { return force(damped, x, at); };
     check_equal(c, -differenced(f, v, 1), 1e-12);

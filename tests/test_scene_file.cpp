@@ -63,6 +63,21 @@ void check_equal(const PerKind& a, const PerKind& b) {
   BOOST_TEST(a.bending == b.bending);
 }
 
+const SpringMaterial& springs(const SceneDescription& scene) {
+  return std::get<SpringMaterial>(scene.material);
+}
+
+const ClothMaterial& triangles(const SceneDescription& scene) {
+  return std::get<ClothMaterial>(scene.material);
+}
+
+void check_equal(const PerCondition& a, const PerCondition& b) {
+  BOOST_TEST(a.stretch_u == b.stretch_u);
+  BOOST_TEST(a.stretch_v == b.stretch_v);
+  BOOST_TEST(a.shear == b.shear);
+  BOOST_TEST(a.bending == b.bending);
+}
+
 }  // namespace
 
 BOOST_AUTO_TEST_SUITE(scene_file)
@@ -80,10 +95,10 @@ BOOST_AUTO_TEST_CASE(every_field_that_is_written_arrives) {
   const SceneDescription scene = read_scene_file(file.path());
   const Grid& grid = std::get<Grid>(scene.geometry);
   BOOST_TEST((grid.rows == 7 && grid.columns == 9 && grid.spacing == 0.5));
-  BOOST_TEST(scene.material.area_density == 0.3);
-  BOOST_TEST(scene.material.particle_mass.value() == 1.25e-4);
-  check_equal(scene.material.stiffness, {11, 12, 13});
-  check_equal(scene.material.damping, {0.01, 0.02, 0.03});
+  BOOST_TEST(springs(scene).area_density == 0.3);
+  BOOST_TEST(springs(scene).particle_mass.value() == 1.25e-4);
+  check_equal(springs(scene).stiffness, {11, 12, 13});
+  check_equal(springs(scene).damping, {0.01, 0.02, 0.03});
   BOOST_TEST((scene.pins.kind == Pins::Kind::indices));
   BOOST_TEST(scene.pins.indices == (std::vector{0, 5, 6}), boost::test_tools::per_element());
   BOOST_TEST(scene.pins.source == file.path());
@@ -98,10 +113,10 @@ BOOST_AUTO_TEST_CASE(every_field_that_is_written_arrives) {
 BOOST_AUTO_TEST_CASE(what_is_absent_has_its_default) {
   const SceneDescription scene = read(R"({"geometry": {"grid": [3, 4]}})");
   BOOST_TEST(std::get<Grid>(scene.geometry).spacing == 0.025);
-  BOOST_TEST(scene.material.area_density == 0.2);
-  BOOST_TEST(!scene.material.particle_mass.has_value());
-  check_equal(scene.material.stiffness, {200, 100, 20});
-  check_equal(scene.material.damping, {0, 0, 0});
+  BOOST_TEST(springs(scene).area_density == 0.2);
+  BOOST_TEST(!springs(scene).particle_mass.has_value());
+  check_equal(springs(scene).stiffness, {200, 100, 20});
+  check_equal(springs(scene).damping, {0, 0, 0});
   BOOST_TEST((scene.pins.kind == Pins::Kind::none));
   BOOST_TEST((scene.gravity == Eigen::Vector3d(0, -9.81, 0)));
   BOOST_TEST(scene.damping.d0 == 0);
@@ -119,10 +134,11 @@ BOOST_AUTO_TEST_CASE(the_path_of_a_mesh_is_relative_to_the_scene_file) {
 }
 
 BOOST_AUTO_TEST_CASE(a_name_picks_the_material_and_other_keys_override_it) {
-  check_equal(read(with("\"material\": \"soft\"")).material.stiffness, {20, 10, 2});
-  const auto material = read(with("\"material\": {\"shear\": 5, \"name\": \"stiff\"}")).material;
+  check_equal(springs(read(with("\"material\": \"soft\""))).stiffness, {20, 10, 2});
+  const SpringMaterial material = springs(read(with("\"material\": {\"shear\": 5, \"name\": \"stiff\"}")));
   check_equal(material.stiffness, {20000, 5, 200});
-  check_equal(named_material("default", "", 0).stiffness, SpringMaterial{}.stiffness);
+  check_equal(std::get<SpringMaterial>(named_material("default", "", 0)).stiffness,
+              SpringMaterial{}.stiffness);
   expect_error([] { named_material("sotf", "--material", 0); }, "--material", "did you mean 'soft'?");
 }
 
@@ -261,12 +277,56 @@ BOOST_AUTO_TEST_CASE(the_hanging_net_is_the_papers) {
   const SceneDescription scene = read_scene_file((root / "experiments/scenes/hanging_net_64.json").string());
   const Grid& grid = std::get<Grid>(scene.geometry);
   BOOST_TEST((grid.rows == 64 && grid.columns == 64 && grid.spacing == 0.025));
-  BOOST_TEST(scene.material.particle_mass.value() == 1.25e-4);
-  check_equal(scene.material.stiffness, {200, 100, 20});
+  BOOST_TEST(springs(scene).particle_mass.value() == 1.25e-4);
+  check_equal(springs(scene).stiffness, {200, 100, 20});
   BOOST_TEST((scene.pins.kind == Pins::Kind::first_row));
   BOOST_TEST((scene.gravity == Eigen::Vector3d(0, -9.81, 0)));
   BOOST_TEST(scene.damping.d0 == 1);
   BOOST_TEST(scene.damping.alpha.value() == 1e-3);
+}
+
+BOOST_AUTO_TEST_CASE(a_cloth_of_triangles_arrives_with_all_its_fields) {
+  const SceneDescription scene = read(with(R"("material": {"model": "baraff-witkin", "area_density": 0.3,
+      "particle_mass": 2e-4, "stretch": [900, 800], "shear": 70, "bending": 2e-5, "area_scaling": "original",
+      "damping": {"stretch": 0.5, "shear": 0.25, "bending": 1e-7}, "rest_stretch": [1, 0.9],
+      "texture_unit": 2})"));
+  const ClothMaterial& cloth = triangles(scene);
+  BOOST_TEST(cloth.area_density == 0.3);
+  BOOST_TEST(cloth.particle_mass.value() == 2e-4);
+  check_equal(cloth.stiffness, {900, 800, 70, 2e-5});
+  check_equal(cloth.damping, {0.5, 0.5, 0.25, 1e-7});
+  BOOST_TEST((cloth.scaling == AreaScaling::original));
+  BOOST_TEST((cloth.rest_stretch.u == 1 && cloth.rest_stretch.v == 0.9));
+  BOOST_TEST(cloth.texture_unit.value() == 2);
+
+  const ClothMaterial bare = triangles(read(with("\"material\": {\"model\": \"baraff-witkin\"}")));
+  const ClothMaterial named = triangles(read(with("\"material\": \"baraff-witkin\"")));
+  for (const ClothMaterial& material : {bare, named}) {
+    check_equal(material.stiffness, ClothMaterial{}.stiffness);
+    check_equal(material.damping, {});
+    BOOST_TEST((material.scaling == AreaScaling::continuum));
+    BOOST_TEST(!material.texture_unit);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_wrong_cloth_of_triangles_is_refused_with_its_line) {
+  const struct {
+    std::string keys, words;
+  } cases[] = {
+      {"\"model\": \"baraff-witken\"", "did you mean 'baraff-witkin'?"},
+      {"\"model\": 1", "'model' is 1, expected 'springs' or 'baraff-witkin'"},
+      {"\"model\": \"springs\", \"stretch\": 1", "unknown key 'stretch'"},
+      {"\"model\": \"baraff-witkin\", \"structural\": 1", "unknown key 'structural'"},
+      {"\"model\": \"baraff-witkin\", \"name\": \"soft\"",
+       "'name' is 'soft', expected the name of a material of"},
+      {"\"model\": \"baraff-witkin\", \"stretch\": [1]", "'stretch' has 1 entries"},
+      {"\"model\": \"baraff-witkin\", \"stretch\": [1, -2]", "'stretch'[1] is -2"},
+      {"\"model\": \"baraff-witkin\", \"rest_stretch\": 0", "'rest_stretch' is 0"},
+      {"\"model\": \"baraff-witkin\", \"area_scaling\": \"none\"", "expected 'continuum' or 'original'"},
+      {"\"model\": \"baraff-witkin\", \"texture_unit\": 0", "'texture_unit' is 0"},
+      {"\"model\": \"baraff-witkin\", \"shear\": 0, \"damping\": {\"shear\": 1}", "shear damping is 1"},
+  };
+  for (const auto& c : cases) expect_refused(with("\"material\": {\n" + c.keys + "}"), 3, c.words);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -21,6 +21,7 @@
 #include "analysis/transition_operator.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/scene/scene.h"
+#include "solvers/scene/spring_cloth.h"
 #include "solvers/stepper.h"
 #include "tests/shared_data.h"
 

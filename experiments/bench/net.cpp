@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "solvers/scene/scene.h"
+#include "solvers/scene/spring_cloth.h"
 #include "solvers/stepper.h"
 
 namespace {

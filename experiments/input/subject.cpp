@@ -194,6 +194,7 @@ EnergyWatch Subject::energy_watch(const State<Vector>& start) {
   } else {
     watch.initial_energy += matrices_->potential_energy(start.x);
   }
+  watch.initial_total = system().kinetic_energy(start.v) + system().potential_energy(start.x);
   return watch;
 }
 

@@ -24,14 +24,14 @@ class Linearized {
     return status;
   }
 
-  void set_steps_per_linearization(long steps) {
-    if (steps < 1) throw std::invalid_argument("a linearization must serve at least one step");
-    steps_per_linearization_ = steps;
-    forget();
+  /// The next step linearizes anew, as after a divergence (paper §4, step 2.3), and so does every
+  /// `steps_per_linearization`-th from there.
+  void restart(long steps_per_linearization) {
+    if (steps_per_linearization < 1)
+      throw std::invalid_argument("a linearization must serve at least one step");
+    steps_per_linearization_ = steps_per_linearization;
+    steps_ = 0;
   }
-
-  /// The next step linearizes anew, as after a divergence (paper §4, step 2.3).
-  void forget() { steps_ = 0; }
 
  private:
   // The linear system plus what the forces have beyond it at the point of linearization.

@@ -13,7 +13,7 @@ namespace {
 constexpr double default_max_step = 0.01;  // [s], where nothing limits the step
 constexpr double tight_watch = 3;          // times the speed that energy conservation allows
 constexpr double tight_gain = 1;           // times the energy that all of that speed would be
-constexpr double quick_tolerance = 1e-4;  // of k0 on the way: far below what the safety factor covers
+constexpr double quick_tolerance = 1e-4;   // of k0 on the way: far below what the safety factor covers
 constexpr long patience = 20, progress = 10;
 
 }  // namespace
@@ -27,7 +27,8 @@ StepChooser::StepChooser(Subject& subject, const CommonOptions& common, const Si
       relinearize_(options.relinearize) {}
 
 std::optional<double> StepChooser::recommended(const State<Vector>& state, double tolerance) {
-  const StiffestMode k0 = estimated_stiffest_mode(subject_.structure(state), {.tolerance = tolerance, .seed = common_.seed});
+  const StiffestMode k0 =
+      estimated_stiffest_mode(subject_.structure(state), {.tolerance = tolerance, .seed = common_.seed});
   if (!k0.converged) return reason_ = "k0 did not converge", std::nullopt;
   DampingModel damping = subject_.damping();
   if (designed_) damping.kind = DampingModel::Kind::designed;

@@ -62,10 +62,7 @@ struct Iteration {
     iparam[0] = 1;  // exact shifts
     iparam[2] = options.max_restarts;
     iparam[6] = 1;  // A v = θ v
-    start.resize(n);
-    std::mt19937_64 random(options.seed);
-    std::uniform_real_distribution<double> uniform(-1, 1);
-    for (double& entry : start) entry = uniform(random);
+    start = start_vector(n, options.start, options.seed);
     basis.setZero(n, ncv);
     workd.setZero(3 * static_cast<Eigen::Index>(n));
   }
@@ -113,6 +110,21 @@ struct Iteration {
 };
 
 }  // namespace
+
+Eigen::VectorXd start_vector(Eigen::Index size, const Eigen::VectorXd& start, std::uint64_t seed) {
+  if (size < 1) throw std::invalid_argument("the operator has size 0, expected at least 1");
+  if (start.size() == 0) {
+    Eigen::VectorXd random(size);
+    std::mt19937_64 engine(seed);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (double& entry : random) entry = uniform(engine);
+    return random;
+  }
+  if (start.size() != size || !start.allFinite() || start.isZero(0))
+    throw std::invalid_argument("the start vector has " + std::to_string(start.size()) +
+                                " entries, expected " + std::to_string(size) + ", finite and not all zero");
+  return start;
+}
 
 SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index count,
                                        const ArpackOptions& options) {

@@ -20,8 +20,13 @@ struct ArpackOptions {
   double tolerance = 1e-10;      // on ‖Av - θv‖, relative to |θ|
   Eigen::Index basis_size = 64;  // Lanczos/Arnoldi vectors kept (ncv)
   int max_restarts = 2000;
-  std::uint64_t seed = 1;  // of the start vector
+  std::uint64_t seed = 1;   // of the start vector
+  Eigen::VectorXd start{};  // used instead if not empty, as from a nearby operator's eigenvector
 };
+
+/// `start`, or where that is empty entries uniform in (-1, 1) from the seed. Throws std::invalid_argument for
+/// size 0 and for a start of another size, not finite or zero.
+Eigen::VectorXd start_vector(Eigen::Index size, const Eigen::VectorXd& start, std::uint64_t seed);
 
 /// What a symmetric solve found. `values` holds the converged eigenvalues only, largest first; it is empty,
 /// never garbage, when nothing converged.

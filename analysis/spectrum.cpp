@@ -31,21 +31,6 @@ double largest_row_sum(const SparseMatrix& a) {
   return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
 }
 
-// S as an operator. With a diagonal mass it is a matrix; else L⁻¹ P K Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
-LinearOperator scaled_stiffness(const StructuralMatrices& s) {
-  if (is_diagonal(s.mass)) {
-    const auto matrix = std::make_shared<SparseMatrix>(scaled(s.stiffness, inverse_root_mass(s)));
-    return {s.size(),
-            [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; }};
-  }
-  const auto mass = std::make_shared<Cholesky>(s.mass);
-  return {s.size(), [mass, &s](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-            out = mass->permutationPinv() * mass->matrixU().solve(in);
-            out = mass->permutationP() * (s.stiffness * out).eval();
-            mass->matrixL().solveInPlace(out);
-          }};
-}
-
 StiffestMode dense_spectrum(const LinearOperator& s) {
   Eigen::MatrixXd matrix(s.size, s.size);
   Eigen::VectorXd column;
@@ -85,6 +70,21 @@ double factorization_error(const Cholesky& factor, double largest_diagonal) {
 }
 
 }  // namespace
+
+// With a diagonal mass it is a matrix; else L⁻¹ P K Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
+LinearOperator scaled_stiffness(const StructuralMatrices& s) {
+  if (is_diagonal(s.mass)) {
+    const auto matrix = std::make_shared<SparseMatrix>(scaled(s.stiffness, inverse_root_mass(s)));
+    return {s.size(),
+            [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; }};
+  }
+  const auto mass = std::make_shared<Cholesky>(s.mass);
+  return {s.size(), [mass, &s](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+            out = mass->permutationPinv() * mass->matrixU().solve(in);
+            out = mass->permutationP() * (s.stiffness * out).eval();
+            mass->matrixL().solveInPlace(out);
+          }};
+}
 
 bool is_below(const StructuralMatrices& s, double sigma) {
   const Eigen::VectorXd d = inverse_root_mass(s);

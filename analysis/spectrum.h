@@ -27,6 +27,9 @@ struct StiffestMode {
   bool indefinite = false;         // some eigenvalue is below -1e-9 k0: the structure itself is unstable
 };
 
+/// S as an operator, which may refer to `s`.
+LinearOperator scaled_stiffness(const StructuralMatrices& s);
+
 /// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Above 150 000 unknowns nothing is factorized: the
 /// bound is Gershgorin's and definiteness is not tested.
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});

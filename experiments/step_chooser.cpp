@@ -26,9 +26,11 @@ StepChooser::StepChooser(Subject& subject, const CommonOptions& common, const Si
       designed_(subject.damping().kind == DampingModel::Kind::designed),
       relinearize_(options.relinearize) {}
 
-std::optional<double> StepChooser::recommended(const State<Vector>& state, double tolerance) {
-  const StiffestMode k0 =
-      estimated_stiffest_mode(subject_.structure(state), {.tolerance = tolerance, .seed = common_.seed});
+StiffestMode StepChooser::k0_at(const State<Vector>& state, double tolerance) {
+  return estimated_stiffest_mode(subject_.structure(state), {.tolerance = tolerance, .seed = common_.seed});
+}
+
+std::optional<double> StepChooser::recommended(const StiffestMode& k0) {
   if (!k0.converged) return reason_ = "k0 did not converge", std::nullopt;
   DampingModel damping = subject_.damping();
   if (designed_) damping.kind = DampingModel::Kind::designed;
@@ -64,8 +66,12 @@ StepPlan StepChooser::plan(double largest_step, double duration) {
 }
 
 std::optional<StepPlan> StepChooser::first_plan() {
-  const std::optional<double> step =
-      options_.step ? options_.step : recommended(subject_.initial_state(common_.seed), 1e-10);
+  if (options_.step) return plan(*options_.step, options_.duration);
+  return first_plan(k0_at(subject_.initial_state(common_.seed), 1e-10));
+}
+
+std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {
+  const std::optional<double> step = options_.step ? options_.step : recommended(k0);
   if (!step) return std::nullopt;
   return plan(*step, options_.duration);
 }
@@ -81,7 +87,7 @@ EnergyWatch StepChooser::watch(const State<Vector>& start) {
 
 std::optional<StepPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {
   if (options_.step || !subject_.scene()) return std::nullopt;
-  double step = recommended(state, quick_tolerance).value_or(h_ / 2);
+  double step = recommended(k0_at(state, quick_tolerance)).value_or(h_ / 2);
   if (step >= h_ * (1 - 1e-9)) step = method_.linearized && relinearize_ > h_ ? h_ : h_ / 2;
   if (method_.linearized) relinearize_ = std::max(relinearize_ / 2, step);
   ++rollbacks_;

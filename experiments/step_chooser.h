@@ -23,6 +23,8 @@ class StepChooser {
 
   /// Nothing where there is no stable step or none is known; reason() then says which.
   std::optional<StepPlan> first_plan();
+  /// The same for a k0 that is known already.
+  std::optional<StepPlan> first_plan(const StiffestMode& k0);
   const std::string& reason() const { return reason_; }
 
   /// Tight where there is a policy to save the run, wide where a fixed step decides.
@@ -37,7 +39,8 @@ class StepChooser {
   long halved_steps() const { return halved_steps_; }
 
  private:
-  std::optional<double> recommended(const State<Vector>& state, double tolerance);
+  StiffestMode k0_at(const State<Vector>& state, double tolerance);
+  std::optional<double> recommended(const StiffestMode& k0);
   StepPlan plan(double largest_step, double duration);
   std::optional<StepPlan> after_divergence(double time, const State<Vector>& state);
 

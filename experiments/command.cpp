@@ -114,6 +114,8 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
                    "exact, or projected to be positive semidefinite, in implicit and linearized methods")
       ->check(CLI::IsMember({"exact", "projected"}))
       ->capture_default_str();
+  command->add_flag("--explain", o.explain,
+                    "first say what the scene has, what each part costs a step, and what was left out");
   command->add_option("--output", o.output, "folder for the frames (matrices: trajectory.csv)")
       ->type_name("DIR");
   command->add_option("--format", o.format, "of the frames: obj or vtk")
@@ -129,8 +131,9 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
       "The step is shortened so that a whole number of steps ends at the duration. Units are SI. Matrices "
       "start from a\n"
       "random displacement of unit M-norm (--seed) at rest, without force.\n"
-      "Unless --step is given, a run that diverges goes back one step and on with a step for the stiffness "
-      "it has there.\n"
+      "Unless --step is given, a run that diverges goes back to its last checkpoint and on with a step for "
+      "the stiffness\n"
+      "it has there; a linearized method then also linearizes twice as often.\n"
       "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
       "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
       "--output drape");

@@ -64,6 +64,7 @@ struct SimulateOptions {
   double relinearize = 0.01;  // h_m of the linearized methods [s]
   bool designed_damping = false;
   bool projected_hessian = false;
+  bool explain = false;
   std::string output;  // folder, empty for none
   std::string format = "obj";
   int frames = 100;

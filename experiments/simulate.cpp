@@ -6,6 +6,7 @@
 
 #include "analysis/method_limits.h"
 #include "experiments/experiments.h"
+#include "experiments/explain.h"
 #include "experiments/frames.h"
 #include "experiments/measured_run.h"
 #include "experiments/output.h"
@@ -124,6 +125,8 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     if (!subject.scene()) throw InputError("--hessian", 0, "'projected' is for scenes, expected 'exact'");
     subject.scene()->set_hessian(Hessian::projected);
   }
+  if (options.explain && !subject.scene())
+    throw InputError("--explain", 0, "is for scenes, expected no matrices");
   StepChooser chooser(subject, common, options);
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) {
@@ -139,6 +142,8 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   if (Scene* scene = subject.scene()) scene->solver().tolerance = options.cg_tolerance;
 
   const State<Vector> start = subject.initial_state(common.seed);
+  const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
+  if (options.explain && !common.json) std::cout << explanation_table(explanation);
   System& system = subject.system();
   Recorder recorder(subject, options);
   Progress progress("simulating", common.quiet);
@@ -181,6 +186,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     report["last_particle"] = {{"position", {last.x(), last.y(), last.z()}}};
     report["cg_tolerance"] = options.cg_tolerance;
   }
+  if (options.explain) report["explanation"] = explanation;
   if (common.json) {
     std::cout << report.dump(2) << '\n';
   } else {

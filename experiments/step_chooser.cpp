@@ -15,6 +15,7 @@ constexpr double tight_watch = 3;          // times the speed that energy conser
 constexpr double tight_gain = 1;           // times the energy that all of that speed would be
 constexpr double quick_tolerance = 1e-4;   // of k0 on the way: far below what the safety factor covers
 constexpr long patience = 20, progress = 10;
+constexpr double hopeless = 1e-6;  // of the first step
 
 }  // namespace
 
@@ -73,6 +74,7 @@ std::optional<StepPlan> StepChooser::first_plan() {
 std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {
   const std::optional<double> step = options_.step ? options_.step : recommended(k0);
   if (!step) return std::nullopt;
+  least_step_ = hopeless * std::min(*step, options_.duration);
   return plan(*step, options_.duration);
 }
 
@@ -89,6 +91,7 @@ std::optional<StepPlan> StepChooser::after_divergence(double time, const State<V
   if (options_.step || !subject_.scene()) return std::nullopt;
   double step = recommended(k0_at(state, quick_tolerance)).value_or(h_ / 2);
   if (step >= h_ * (1 - 1e-9)) step = method_.linearized && relinearize_ > h_ ? h_ : h_ / 2;
+  if (step < least_step_) return std::nullopt;
   if (method_.linearized) relinearize_ = std::max(relinearize_ / 2, step);
   ++rollbacks_;
   return plan(step, options_.duration - time);

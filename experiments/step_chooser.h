@@ -15,8 +15,9 @@ namespace springstab {
 /// checkpoint, k0 is computed for the state there, and the step (and designed damping) chosen for it. A
 /// linearized method also linearizes twice as often from there on, since frozen forces lead away from the
 /// true ones; where neither has shortened anything, the step is halved. When 1 + hD' + h²K' is not positive
-/// definite, the step is taken as two halves (paper §5.2). After 20 failures within 10 steps' progress it
-/// gives up.
+/// definite, the step is taken as two halves (paper §5.2). It gives up after 20 failures within 10
+/// steps' progress, and when a step a millionth of the first one does not help: then the motion itself grows
+/// without bound, as where springs are compressed and damping αK takes no energy but gives it.
 class StepChooser {
  public:
   StepChooser(Subject& subject, const CommonOptions& common, const SimulateOptions& options);
@@ -50,8 +51,8 @@ class StepChooser {
   const MethodInfo& method_;
   bool designed_;
   std::string reason_;
-  double h_ = 0;
-  double relinearize_;  // h_m [s]
+  double h_ = 0, least_step_ = 0;  // [s]
+  double relinearize_;             // h_m [s]
   long rollbacks_ = 0, halved_steps_ = 0;
   long failures_in_a_row_ = 0, steps_at_last_failure_ = -1;
 };

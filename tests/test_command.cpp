@@ -233,6 +233,117 @@ BOOST_AUTO_TEST_CASE(divergence_is_status_4_with_its_time) {
   }
 }
 
+// A net pulled to three times its size and let go gets stiffer than it was: at the first step alone it gains
+// energy, or explodes. The same watch serves linearized and other methods.
+BOOST_AUTO_TEST_CASE(a_run_that_gets_too_stiff_is_saved_by_shorter_steps) {
+  file("scene.json",
+       R"({"geometry": {"grid": [8, 8]}, "pins": "first-row", "damping": {"d0": 1, "alpha": "designed"},
+           "initial": {"stretch": [3, 1, 3]}})");
+  for (const std::string method : {"explicit-euler", "linearized-explicit-euler"}) {
+    BOOST_TEST_CONTEXT(method) {
+      const std::string run = "simulate scene.json --duration 1 --json --method " + method;
+      const Json saved = (*this)(run).json();
+      BOOST_TEST(saved["counts"]["rollbacks"] > 0);
+      BOOST_TEST(saved["diverged"] == false);
+      const Outcome fixed = (*this)(run + " --step " + saved["step"].dump());
+      const auto energy = [](const Json& report) { return report["energy"]["final"].get<double>(); };
+      BOOST_TEST((fixed.status == 4 || energy(fixed.json()) > 1.5 * energy(saved)));
+    }
+  }
+}
+
+// Damping αK of compressed springs gives energy (K is indefinite there): the motion itself explodes, and no
+// step helps. The run gives up and keeps what it had.
+BOOST_AUTO_TEST_CASE(a_motion_that_explodes_ends_with_status_4_and_its_last_good_frame) {
+  file("scene.json",
+       R"({"geometry": {"grid": [6, 6]}, "pins": "first-row", "damping": {"alpha": 0.01},
+           "initial": {"stretch": [0.5, 1, 0.5]}})");
+  for (const std::string method : {"explicit-euler", "rk4", "linearized-explicit-euler"}) {
+    BOOST_TEST_CONTEXT(method) {
+      const Outcome run =
+          (*this)("simulate scene.json --method " + method + " --duration 1 --output " + method + " --json");
+      BOOST_TEST(run.status == 4);
+      const Json report = run.json();
+      BOOST_TEST(report["diverged"] == true);
+      BOOST_TEST((report["diverged_at"] > 0.0 && report["diverged_at"] < 1.0));
+      BOOST_TEST(report["counts"]["rollbacks"] > 0);
+      BOOST_TEST(report["frames"] > 0);
+      long frames = 0;
+      for (const fs::directory_entry& frame : fs::directory_iterator(folder() / method)) {
+        std::ostringstream text;
+        text << std::ifstream(frame.path()).rdbuf();
+        BOOST_TEST(text.str().find("nan") == std::string::npos);
+        BOOST_TEST(text.str().find("inf") == std::string::npos);
+        ++frames;
+      }
+      BOOST_TEST(report["frames"] == frames);
+    }
+  }
+}
+
+// Every part that the scene has is there with its counts, every other is said to be left out, and a method
+// that linearizes nothing has no matrix.
+BOOST_AUTO_TEST_CASE(an_explanation_lists_what_a_scene_has_and_what_it_lacks) {
+  const auto explained = [&](const std::string& scene, const std::string& options) {
+    file("scene.json", scene);
+    const Json report = (*this)("simulate scene.json --duration 0.02 --json --explain " + options).json();
+    BOOST_TEST(report["diverged"] == false);
+    return report["explanation"];
+  };
+  const auto part = [](const Json& explanation, const std::string& name, const std::string& work) {
+    for (const Json& p : explanation["parts"])
+      if (p["name"].get<std::string>().find(name) != std::string::npos && p["work"] == work) return p;
+    return Json();
+  };
+  const auto lacks = [](const Json& explanation, const std::string& what) {
+    return explanation["left_out"].dump().find(what) != std::string::npos;
+  };
+
+  const Json springs =
+      explained(R"({"geometry": {"grid": [4, 3]}, "material": {"bending": 0}})", "--method rk4 --step 1e-4");
+  BOOST_TEST(springs["particles"] == 12);
+  BOOST_TEST(springs["parts"].size() == 1u);
+  BOOST_TEST(part(springs, "springs", "force")["elements"] == 17 + 12);  // edges and diagonals
+  BOOST_TEST(part(springs, "springs", "force")["times_per_step"] == 4.0);
+  BOOST_TEST(lacks(springs, "bending springs"));
+  BOOST_TEST(lacks(springs, "no matrix D"));
+  BOOST_TEST(lacks(springs, "neither assembled nor stored"));
+  BOOST_TEST(!lacks(springs, "shear springs"));
+
+  const Json cloth =
+      explained(R"({"geometry": {"grid": [4, 3]}, "pins": "first-row", "damping": {"alpha": 1e-3},
+                    "material": {"model": "baraff-witkin", "damping": {"stretch": 0.1}}})",
+                "--method implicit-euler");
+  BOOST_TEST(cloth["pinned"] == 3);
+  BOOST_TEST(part(cloth, "triangles that resist", "Hessian")["times_per_step"] == 1.0);
+  BOOST_TEST(part(cloth, "hinges that resist", "Hessian")["elements"] > 0);
+  BOOST_TEST(part(cloth, "triangles that damp", "damping matrix")["times_per_step"] == 1.0);
+  BOOST_TEST(part(cloth, "blocks of K", "product")["times_per_step"] >= 1.0);
+  BOOST_TEST(part(cloth, "blocks of K", "product")["bytes"] >= 76 * 9);
+  BOOST_TEST(part(cloth, "blocks of D", "product")["elements"] > 0);
+  BOOST_TEST(cloth["left_out"].empty());
+  BOOST_TEST((*this)("simulate --stiffness k.mtx --method rk4 --duration 1 --explain").status == 2);
+}
+
+// What is written with a coefficient of 0 costs and changes as much as what is not written: nothing.
+BOOST_AUTO_TEST_CASE(an_unused_feature_changes_no_count_and_no_digit) {
+  const auto run = [&](const std::string& material, const std::string& rest) {
+    file("scene.json",
+         R"({"geometry": {"grid": [8, 8]}, "pins": "corners", "material": {)" + material + "}" + rest + "}");
+    Json report =
+        (*this)("simulate scene.json --method implicit-euler --duration 0.1 --json --explain").json();
+    for (const char* clock : {"cpu_seconds", "explanation"}) report.erase(clock);
+    return report;
+  };
+  const Json plain = run(R"("bending": 0)", "");
+  BOOST_TEST(plain["counts"]["cg_iterations"] > 0);
+  BOOST_TEST(plain == run(R"("bending": 0, "damping": {"structural": 0, "shear": 0, "bending": 0})",
+                          R"(, "damping": {"d0": 0, "alpha": 0})"));
+  const std::string cloth = R"("model": "baraff-witkin", "bending": 0)";
+  BOOST_TEST(run(cloth, "") == run(cloth + R"(, "damping": {"stretch": 0, "shear": 0, "bending": 0})", ""));
+  BOOST_TEST(plain["counts"] != run(R"("bending": 20)", "")["counts"]);
+}
+
 BOOST_AUTO_TEST_CASE(designed_damping_makes_explicit_euler_run) {
   const Outcome run = (*this)(
       "simulate --grid 6x6 --pin first-row --method explicit-euler --duration 0.2 --damping designed --json");

@@ -415,6 +415,23 @@ BOOST_AUTO_TEST_CASE(energies_are_those_of_the_particles) {
   });
 }
 
+BOOST_AUTO_TEST_CASE(a_scene_without_linearizations_has_no_matrix) {
+  Random random(6);
+  const SpringNet net = random_net(random);
+  Scene scene(net, some_pins, {0, -9.81, 0}, {0.1, 1e-3});
+  State<Vector> state = scene.rest_state();
+  state.v.setConstant(0.1);
+  const auto explicit_method = make_stepper("rk4");
+  BOOST_REQUIRE((explicit_method->step(scene, 1e-4, state) == StepStatus::done));
+  scene.set_damping({0.2, 2e-3});
+  BOOST_TEST(scene.kinetic_energy(state.v) > 0);
+  BOOST_TEST(!scene.has_matrices());
+  const RayleighDamping& damping = scene.linearized(state.x, state.v).damping();
+  BOOST_TEST(scene.has_matrices());
+  BOOST_TEST(damping.d0 == 0.2);
+  BOOST_TEST(damping.alpha == 2e-3);
+}
+
 BOOST_AUTO_TEST_CASE(what_a_scene_lacks_is_not_stored) {
   Random random(5);
   SpringNet net = random_net(random);

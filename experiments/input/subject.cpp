@@ -133,6 +133,7 @@ void Subject::build_matrices(const InputOptions& options) {
 Subject::Subject(const SceneDescription& description) { build_scene(description); }
 
 void Subject::build_scene(const SceneDescription& description) {
+  material_ = description.material;
   if (const Grid* grid = std::get_if<Grid>(&description.geometry)) {
     faces_ = grid_faces(*grid);
     std::visit([&](const auto& material) { place(make(*grid, material), description, grid, "--grid"); },

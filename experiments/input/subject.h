@@ -37,6 +37,9 @@ class Subject {
   /// Faces of the mesh, for pictures: particle numbers; empty for matrices and nets without faces.
   const std::vector<std::vector<int>>& faces() const { return faces_; }
 
+  /// What a scene is made of; nothing for matrices.
+  const std::optional<Material>& material() const { return material_; }
+
   /// The start: a scene's own; for matrices a random displacement of unit M-norm, at rest.
   State<Vector> initial_state(std::uint64_t seed);
   EnergyWatch energy_watch(const State<Vector>& start);
@@ -60,6 +63,7 @@ class Subject {
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<MatrixSystem> matrices_;
   std::vector<std::vector<int>> faces_;
+  std::optional<Material> material_;
   RayleighDescription rayleigh_;
   InitialDescription initial_;
 };

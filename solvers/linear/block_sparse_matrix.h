@@ -30,6 +30,12 @@ class BlockSparseMatrix {
   long row_begin(int i) const { return row_start_[i]; }
   int column(long where) const { return column_[where]; }
 
+  /// What the matrix takes in memory.
+  std::size_t bytes() const {
+    return sizeof(double) * value_.size() + sizeof(int) * column_.size() +
+           sizeof(long) * (row_start_.size() + diagonal_.size());
+  }
+
   void set_zero();
 
   /// out = A in; both of length 3·rows(), not overlapping. Moves 76 bytes per block and 48 per row.

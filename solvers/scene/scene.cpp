@@ -30,25 +30,16 @@ template <class Cloth>
 Scene::Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
              RayleighDamping damping)
     : gravity_(gravity), damping_(damping) {
-  std::vector<double> mass = number_particles(cloth.rest, cloth.mass, pinned);
+  number_particles(cloth.rest, cloth.mass, pinned);
   terms_ = make_terms(cloth, number_, free_count_);
-  const Couplings stiffness = all_couplings(terms_.elastic);
-  if (terms_.damping.empty()) {
-    linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness);
-  } else {
-    linear_ = std::make_unique<BlockLinearSystem>(std::move(mass), damping, stiffness,
-                                                  all_couplings(terms_.damping));
-    for (const auto& term : terms_.damping) term->bind(*linear_->own_damping());
-  }
-  for (const auto& term : terms_.elastic) term->bind(linear_->stiffness());
 }
 
 template Scene::Scene(const SpringNet&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
 template Scene::Scene(const TriangleCloth&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
 
-// Free particles first; returns their masses.
-std::vector<double> Scene::number_particles(const std::vector<Eigen::Vector3d>& rest,
-                                            const std::vector<double>& mass, const std::vector<int>& pinned) {
+// Free particles first.
+void Scene::number_particles(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,
+                             const std::vector<int>& pinned) {
   const int n = static_cast<int>(rest.size());
   std::vector<bool> is_pinned(n, false);
   for (int i : pinned) {
@@ -62,25 +53,37 @@ std::vector<double> Scene::number_particles(const std::vector<Eigen::Vector3d>& 
     throw std::invalid_argument("all particles are pinned, expected at least one that can move");
 
   number_.resize(n);
-  std::vector<double> free_mass;
   int next_free = 0, next_pinned = free_count_;
   for (int i = 0; i < n; ++i) {
     append(is_pinned[i] ? pinned_ : rest_, rest[i]);
-    if (!is_pinned[i]) free_mass.push_back(mass[i]);
+    if (!is_pinned[i]) mass_.push_back(mass[i]);
     number_[i] = is_pinned[i] ? next_pinned++ : next_free++;
   }
+  for (const double m : mass_) inverse_mass_.push_back(1 / m);
   pinned_velocity_.assign(pinned_.size(), 0.0);
-  return free_mass;
+}
+
+BlockLinearSystem& Scene::linear() {
+  if (linear_) return *linear_;
+  const Couplings stiffness = all_couplings(terms_.elastic);
+  if (terms_.damping.empty()) {
+    linear_ = std::make_unique<BlockLinearSystem>(mass_, damping_, stiffness);
+  } else {
+    linear_ = std::make_unique<BlockLinearSystem>(mass_, damping_, stiffness, all_couplings(terms_.damping));
+    for (const auto& term : terms_.damping) term->bind(*linear_->own_damping());
+  }
+  for (const auto& term : terms_.elastic) term->bind(linear_->stiffness());
+  return *linear_;
 }
 
 void Scene::set_damping(const RayleighDamping& damping) {
   damping_ = damping;
-  linear_->set_damping(damping);
+  if (linear_) linear_->set_damping(damping);
 }
 
 double Scene::total_free_mass() const {
   double sum = 0;
-  for (double m : linear_->mass()) sum += m;
+  for (double m : mass_) sum += m;
   return sum;
 }
 
@@ -117,27 +120,34 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   }
   for (const auto& term : terms_.damping)
     term->add_force(positions, {v.data(), pinned_velocity_.data(), free_count_}, out.data());
-  const std::vector<double>& inverse_mass = linear_->inverse_mass();
   for (long i = 0; i < free_count_; ++i)
     out.segment<3>(3 * i) =
-        inverse_mass[i] * out.segment<3>(3 * i) + gravity_ - damping_.d0 * v.segment<3>(3 * i);
+        inverse_mass_[i] * out.segment<3>(3 * i) + gravity_ - damping_.d0 * v.segment<3>(3 * i);
 }
 
 BlockLinearSystem& Scene::linearized(const Vector& x, const Vector&) {
   const ParticleField positions = position_field(x);
-  linear_->stiffness().set_zero();
+  BlockLinearSystem& system = linear();
+  system.solver = solver_;
+  system.stiffness().set_zero();
   for (const auto& term : terms_.elastic) {
     if (hessian_ == Hessian::projected) {
-      term->add_projected_stiffness(positions, linear_->stiffness());
+      term->add_projected_stiffness(positions, system.stiffness());
     } else {
-      term->add_stiffness(positions, linear_->stiffness());
+      term->add_stiffness(positions, system.stiffness());
     }
   }
-  if (BlockSparseMatrix* damping = linear_->own_damping()) {
+  if (BlockSparseMatrix* damping = system.own_damping()) {
     damping->set_zero();
     for (const auto& term : terms_.damping) term->add_damping(positions, *damping);
   }
-  return *linear_;
+  return system;
+}
+
+double Scene::kinetic_energy(const Vector& v) {
+  double sum = 0;
+  for (long i = 0; i < free_count_; ++i) sum += mass_[i] * v.segment<3>(3 * i).squaredNorm();
+  return sum / 2;
 }
 
 double Scene::elastic_energy(const Vector& x) const {
@@ -149,7 +159,7 @@ double Scene::elastic_energy(const Vector& x) const {
 double Scene::potential_energy(const Vector& x) {
   double energy = elastic_energy(x);
   for (int i = 0; i < free_count_; ++i)
-    energy -= linear_->mass()[i] * gravity_.dot(x.segment<3>(3 * static_cast<long>(i)));
+    energy -= mass_[i] * gravity_.dot(x.segment<3>(3 * static_cast<long>(i)));
   return energy;
 }
 

@@ -47,6 +47,9 @@ class Scene final : public System {
   void set_hessian(Hessian hessian) { hessian_ = hessian; }
   Hessian hessian() const { return hessian_; }
 
+  /// Whether a linearization was asked for: until then there is no matrix.
+  bool has_matrices() const { return linear_ != nullptr; }
+
   /// The free particles at rest, not moving.
   State<Vector> rest_state() const;
   /// Moves the pinned particles; one position per pinned particle, in order.
@@ -54,20 +57,23 @@ class Scene final : public System {
   /// Where every particle is, by its original number.
   std::vector<Eigen::Vector3d> positions(const Vector& x) const;
 
-  /// Of the conjugate gradients in implicit methods.
-  ConjugateGradientOptions& solver() { return linear_->solver; }
+  /// Where all particles are, for terms().
+  ParticleField position_field(const Vector& x) const;
+
+  /// Of the conjugate gradients in implicit methods, from the next linearization on.
+  ConjugateGradientOptions& solver() { return solver_; }
 
   Eigen::Index size() const override { return 3 * static_cast<Eigen::Index>(free_count_); }
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
   BlockLinearSystem& linearized(const Vector& x, const Vector& v) override;
-  double kinetic_energy(const Vector& v) override { return linear_->kinetic_energy(v); }
+  double kinetic_energy(const Vector& v) override;
   double elastic_energy(const Vector& x) const;
   double potential_energy(const Vector& x) override;
 
  private:
-  std::vector<double> number_particles(const std::vector<Eigen::Vector3d>& rest,
-                                       const std::vector<double>& mass, const std::vector<int>& pinned);
-  ParticleField position_field(const Vector& x) const;
+  void number_particles(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,
+                        const std::vector<int>& pinned);
+  BlockLinearSystem& linear();  // made when it is first needed
 
   int free_count_ = 0;
   std::vector<int> number_;              // particle -> its place: free ones first, then pinned ones
@@ -77,8 +83,10 @@ class Scene final : public System {
   Eigen::Vector3d gravity_;
   RayleighDamping damping_;
   Hessian hessian_ = Hessian::exact;
+  ConjugateGradientOptions solver_;
+  std::vector<double> mass_, inverse_mass_;  // of the free particles [kg, 1/kg]
   SceneTerms terms_;
-  std::unique_ptr<BlockLinearSystem> linear_;
+  std::unique_ptr<BlockLinearSystem> linear_;  // none until a linearization is asked for
 };
 
 }  // namespace springstab

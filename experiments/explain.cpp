@@ -48,34 +48,44 @@ void add_forces(Json& parts, Scene& scene, const State<Vector>& at, double times
                          seconds_each([&] { term->add_force(x, v, force.data()); }), times));
 }
 
-// Assembly term by term, and products, for methods that linearize.
-void add_matrices(Json& parts, Scene& scene, const State<Vector>& at, double assemblies, double products) {
+// Assembly, term by term.
+void add_assembly(Json& parts, Scene& scene, const State<Vector>& at, double times) {
   const ParticleField x = scene.position_field(at.x);
   BlockLinearSystem& linear = scene.linearized(at.x, at.v);
-  BlockSparseMatrix& k = linear.stiffness();
   for (const auto& term : scene.terms().elastic)
     parts.push_back(part(term->name(), term->size(), "Hessian", seconds_each([&] {
                            if (scene.hessian() == Hessian::exact) {
-                             term->add_stiffness(x, k);
+                             term->add_stiffness(x, linear.stiffness());
                            } else {
-                             term->add_projected_stiffness(x, k);
+                             term->add_projected_stiffness(x, linear.stiffness());
                            }
                          }),
-                         assemblies));
-  BlockSparseMatrix* d = linear.own_damping();
-  if (d)
-    for (const auto& term : scene.terms().damping)
-      parts.push_back(part(term->name(), term->size(), "damping matrix",
-                           seconds_each([&] { term->add_damping(x, *d); }), assemblies));
+                         times));
+  for (const auto& term : scene.terms().damping)
+    parts.push_back(part(term->name(), term->size(), "damping matrix",
+                         seconds_each([&] { term->add_damping(x, *linear.own_damping()); }), times));
+}
+
+// Products with K and D, and the iterations of the conjugate gradients.
+void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, double products,
+                 double iterations) {
+  BlockLinearSystem& linear = scene.linearized(at.x, at.v);
   Vector out(scene.size());
-  const auto add_product = [&](const char* name, const BlockSparseMatrix& matrix) {
-    Json product = part(name, matrix.blocks(), "product",
-                        seconds_each([&] { matrix.multiply(at.x.data(), out.data()); }), products);
-    product["bytes"] = matrix.bytes();
-    parts.push_back(product);
+  const auto stored = [](Json row, const BlockSparseMatrix& matrix) {
+    row["bytes"] = matrix.bytes();
+    return row;
   };
-  add_product("blocks of K", k);
-  if (d) add_product("blocks of D", *d);
+  const auto add_product = [&](const char* name, const BlockSparseMatrix& matrix) {
+    const double seconds = seconds_each([&] { matrix.multiply(at.x.data(), out.data()); });
+    parts.push_back(stored(part(name, matrix.blocks(), "product", seconds, products), matrix));
+  };
+  add_product("blocks of K", linear.stiffness());
+  if (linear.own_damping()) add_product("blocks of D", *linear.own_damping());
+  if (iterations == 0) return;
+  SolveReport report;
+  const double seconds = seconds_each([&] { report = linear.solve_shifted(h, at.x, out); });
+  parts.push_back(part("conjugate gradients", scene.size(), "iteration",
+                       seconds / static_cast<double>(std::max(1L, report.iterations)), iterations));
 }
 
 std::vector<std::string> absent_parts(const SpringMaterial& material) {
@@ -120,12 +130,14 @@ Json explain(Subject& subject, std::string_view method, const StepPlan& plan, co
 
   Json parts = Json::array();
   add_forces(parts, scene, start, a_step(counts.force_evaluations));
-  if (counts.hessian_assemblies > 0)
-    add_matrices(parts, scene, start, a_step(counts.hessian_assemblies), a_step(counts.block_products));
+  if (counts.hessian_assemblies > 0) {
+    add_assembly(parts, scene, start, a_step(counts.hessian_assemblies));
+    add_algebra(parts, scene, start, plan.h, a_step(counts.block_products - counts.cg_iterations),
+                a_step(counts.cg_iterations));
+  }
   return {{"particles", scene.particles()},
           {"pinned", scene.particles() - scene.free_particles()},
           {"steps_tried", steps},
-          {"cg_iterations_per_step", a_step(counts.cg_iterations)},
           {"parts", parts},
           {"left_out", left_out(subject, scene, counts.hessian_assemblies > 0)}};
 }

@@ -319,6 +319,7 @@ BOOST_AUTO_TEST_CASE(an_explanation_lists_what_a_scene_has_and_what_it_lacks) {
   BOOST_TEST(part(cloth, "hinges that resist", "Hessian")["elements"] > 0);
   BOOST_TEST(part(cloth, "triangles that damp", "damping matrix")["times_per_step"] == 1.0);
   BOOST_TEST(part(cloth, "blocks of K", "product")["times_per_step"] >= 1.0);
+  BOOST_TEST(part(cloth, "conjugate gradients", "iteration")["times_per_step"] >= 1.0);
   BOOST_TEST(part(cloth, "blocks of K", "product")["bytes"] >= 76 * 9);
   BOOST_TEST(part(cloth, "blocks of D", "product")["elements"] > 0);
   BOOST_TEST(cloth["left_out"].empty());

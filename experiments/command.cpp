@@ -146,12 +146,34 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
   });
 }
 
+void add_complexity(CLI::App& app, const CommonOptions& common, ComplexityOptions& o,
+                    std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("complexity", "What the methods cost on a draping cloth");
+  command->add_flag("--quick", o.quick, "smaller cloths, a shorter time, three rounds: within a minute");
+  command->add_option("--output", o.output, "folder for Figures 5 to 7 and every run as CSV")
+      ->type_name("DIR");
+  command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->footer(
+      "CPU time against the number of particles, the square root of k0 (rad/s) and implicit Euler's step "
+      "(s), "
+      "each with the\n"
+      "exponent of its growth and its 95 % confidence interval; medians of five interleaved rounds, about 5 "
+      "minutes.\n"
+      "JSON: claims[] {claim, paper, measured}; studies[] {name, series[] {name, exponent, half_width, "
+      "points[]}};\n"
+      "all_finished; rollbacks; provenance; files. Exit status 3: a run did not come to its end.\n\n"
+      "example: springstab complexity --output figures");
+  command->callback([&] { chosen = [&] { return run_complexity(common, o); }; });
+}
+
 void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o,
                  std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
-  command->add_option("NAMES", o.names, "1, 2, 3 (the paper's) or a method's name (default: all)")
+  command->add_option("NAMES", o.names, "1 to 7 (the paper's), frames, k0 or a method's name (default: all)")
       ->type_name("");
-  command->add_flag("--quick", o.quick, "fewer simulated cells and steps");
+  command->add_flag("--quick", o.quick, "fewer simulated cells, smaller cloths");
   command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
       ->type_name("DIR")
       ->capture_default_str();
@@ -169,6 +191,7 @@ int run_command(int argc, const char* const* argv) {
   RegionOptions region;
   LimitsOptions limits;
   SimulateOptions simulate;
+  ComplexityOptions complexity{.plots = SPRINGSTAB_PLOTS_DIR, .output = ""};
   FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
   std::string damping = "own", hessian = "exact";
   std::function<int()> chosen;
@@ -191,6 +214,7 @@ int run_command(int argc, const char* const* argv) {
   add_region(app, common, region, chosen);
   add_limits(app, common, limits, chosen);
   add_simulate(app, common, simulate, damping, hessian, chosen);
+  add_complexity(app, common, complexity, chosen);
   add_figures(app, common, figures, chosen);
 
   try {

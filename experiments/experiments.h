@@ -72,6 +72,13 @@ struct SimulateOptions {
 };
 int run_simulate(const CommonOptions& common, const SimulateOptions& options);
 
+/// `springstab complexity`: what the methods cost (paper §5).
+struct ComplexityOptions {
+  bool quick = false;
+  std::string plots, output;  // folders; without output nothing is written
+};
+int run_complexity(const CommonOptions& common, const ComplexityOptions& options);
+
 /// `springstab figures`: computes and plots.
 struct FiguresOptions {
   std::vector<std::string> names;  // empty for all

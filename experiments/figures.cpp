@@ -10,7 +10,12 @@
 namespace springstab {
 namespace {
 
-std::vector<Figure> all_figures() { return region_figures(); }
+std::vector<Figure> all_figures() {
+  std::vector<Figure> all = region_figures();
+  for (const auto& more : {drape_figures(), timing_figures()})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
 
 std::vector<Figure> chosen_figures(const std::vector<std::string>& names) {
   const std::vector<Figure> all = all_figures();

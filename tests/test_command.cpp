@@ -433,6 +433,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
       {"simulate cloth.obj --method rk4 --duration -1", "--duration"},
       {"figures 9", "9"},
       {"figures --plots . 1", "region.gp"},
+      {"complexity --plots . --output there", "complexity.gp"},
   };
   const auto files = [&] {
     return std::distance(fs::directory_iterator(folder()), fs::directory_iterator());
@@ -450,9 +451,24 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(complexity_tells_claims_and_every_run) {
+  const Outcome run = (*this)("complexity --quick --json");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  const Json report = run.json();
+  BOOST_TEST(report["all_finished"] == true);
+  BOOST_TEST(report["rollbacks"] == 0);
+  BOOST_TEST(report["studies"].size() == 4);
+  for (const Json& study : report["studies"])
+    for (const Json& series : study["series"]) {
+      BOOST_TEST(series["exponent"].is_number());
+      for (const Json& point : series["points"]) BOOST_TEST(point["cpu_seconds"].size() == study["rounds"]);
+    }
+  for (const Json& claim : report["claims"]) BOOST_TEST(!claim["measured"].get<std::string>().empty());
+}
+
 BOOST_AUTO_TEST_CASE(help_has_examples_and_version_is_a_number) {
   BOOST_TEST((*this)("--help").status == 0);
-  for (const char* subcommand : {"methods", "region", "limits", "simulate", "figures"}) {
+  for (const char* subcommand : {"methods", "region", "limits", "simulate", "complexity", "figures"}) {
     const Outcome help = (*this)(std::string(subcommand) + " --help");
     BOOST_TEST(help.status == 0);
     BOOST_TEST(help.out.find("example") != std::string::npos);

@@ -1,12 +1,17 @@
 // How costs grow, and how k0 is found again: fits, the power method, and races whose counts no clock changes.
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <random>
 #include <vector>
 
 #include "analysis/power_iteration.h"
 #include "analysis/power_law.h"
 #include "analysis/spectrum.h"
+#include "experiments/complexity_studies.h"
+#include "experiments/k0_watch.h"
+#include "solvers/stepper.h"
 
 using namespace springstab;
 
@@ -50,6 +55,8 @@ BOOST_AUTO_TEST_CASE(a_power_law_through_nothing_is_refused) {
 }
 
 namespace {
+
+const CommonOptions quiet{.quiet = true};
 
 /// The diagonal matrix with eigenvalues 1 to n - 1 and one more.
 LinearOperator diagonal(Eigen::Index n, double last) {
@@ -96,6 +103,122 @@ BOOST_AUTO_TEST_CASE(an_operator_that_has_changed_a_little_takes_fewer_products_
   BOOST_REQUIRE((cold.converged && warm.converged));
   BOOST_TEST(warm.products < cold.products);
   BOOST_TEST(warm.values[0] == 306, boost::test_tools::tolerance(1e-9));
+}
+
+// The stencil of the inner particles sets k0, and the sheet's edge takes away less the larger it is.
+BOOST_AUTO_TEST_CASE(a_larger_drape_is_hardly_stiffer_and_k0_is_proportional_to_the_stiffness) {
+  double before = 0;
+  for (int side : {8, 16, 32, 64}) {
+    const double k0 = k0_of({.side = side}, quiet).value;
+    BOOST_TEST(k0 > before);
+    if (before > 0) BOOST_TEST(k0 < 1.04 * before);
+    before = k0;
+  }
+  const double k0 = k0_of({.side = 8}, quiet).value;
+  BOOST_TEST(k0_of({.side = 8, .stiffness_factor = 100}, quiet).value == 100 * k0,
+             boost::test_tools::tolerance(1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
+  const Drape drape{.side = 8};
+  const StiffestMode k0 = k0_of(drape, quiet);
+  std::vector<Heat> heats;
+  for (const MethodInfo& method : all_methods()) {
+    const std::string name(method.name);
+    heats.push_back({{name, name}, drape, k0, 0.05});
+  }
+  heats.push_back(
+      {{"drag", "implicit-euler", DampingRule::drag, Preconditioner::block_jacobi}, drape, k0, 0.05});
+  heats.push_back({{"leu", "implicit-euler", DampingRule::leu}, drape, k0, 0.05});
+  const std::vector<HeatResult> first = race(heats, 3, quiet), second = race(heats, 1, quiet);
+  double leu_alpha = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) BOOST_TEST_CONTEXT(heats[i].contestant.name) {
+      const HeatResult& r = first[i];
+      const MethodInfo& method = find_method(heats[i].contestant.method);
+      BOOST_TEST((r.finished && r.rollbacks == 0 && r.halved_steps == 0));
+      BOOST_TEST(r.cpu_seconds.size() == 3);
+      BOOST_TEST(r.h * static_cast<double>(r.steps) == 0.05, boost::test_tools::tolerance(1e-12));
+      BOOST_TEST(r.counts.block_products == second[i].counts.block_products);
+      BOOST_TEST(r.counts.force_evaluations == second[i].counts.force_evaluations);
+      if (method.implicit) {
+        BOOST_TEST(r.steps == 5);
+        BOOST_TEST(r.counts.hessian_assemblies == 5);
+        BOOST_TEST(r.counts.cg_iterations > 5);
+      } else if (method.linearized) {
+        BOOST_TEST(r.counts.hessian_assemblies == 5);
+        BOOST_TEST(r.counts.force_evaluations == 5);
+        BOOST_TEST(r.counts.block_products >= r.steps);
+      } else {
+        BOOST_TEST(r.counts.force_evaluations % r.steps == 0);
+        BOOST_TEST(r.counts.hessian_assemblies == 0);
+      }
+      if (method.name == "linearized-explicit-euler") leu_alpha = r.alpha;
+    }
+  BOOST_TEST(leu_alpha > 0);
+  BOOST_TEST(first[first.size() - 2].alpha == 0);
+  BOOST_TEST(first.back().alpha == leu_alpha);
+}
+
+BOOST_AUTO_TEST_CASE(medians_are_the_middle_one) {
+  HeatResult result;
+  for (double seconds : {3., 1., 20., 2.}) result.cpu_seconds.push_back(seconds);
+  BOOST_TEST(result.median_seconds() == 2.5);
+  result.cpu_seconds.push_back(0.5);
+  BOOST_TEST(result.median_seconds() == 2);
+}
+
+// Every row has a number or a name in every column that its method fills.
+BOOST_AUTO_TEST_CASE(a_study_writes_a_complete_row_for_every_run) {
+  const StudyResult study = run_study(Study::time_step, true, quiet);
+  BOOST_TEST(study.all_finished());
+  for (const Series& series : study.series)
+    for (std::size_t i = 1; i < series.points.size(); ++i) {  // the smaller the step, the more iterations
+      BOOST_TEST(abscissa(study.study, series.points[i]) > abscissa(study.study, series.points[i - 1]));
+      BOOST_TEST(series.points[i].counts.cg_iterations < series.points[i - 1].counts.cg_iterations);
+    }
+  const auto path = std::filesystem::temp_directory_path() / "springstab_complexity_runs.csv";
+  write_runs(path.string(), study);
+  std::ifstream file(path);
+  std::string header, row;
+  std::getline(file, header);
+  const auto columns = [](const std::string& line) {  // commas within quotes do not count
+    long count = 1;
+    bool quoted = false;
+    for (char c : line) {
+      if (c == '"') quoted = !quoted;
+      count += c == ',' && !quoted;
+    }
+    return count;
+  };
+  std::size_t rows = 0;
+  while (std::getline(file, row)) {
+    ++rows;
+    BOOST_TEST(columns(row) == columns(header));
+    BOOST_TEST((row.find(",,") == std::string::npos && row.find("nan") == std::string::npos));
+  }
+  BOOST_TEST(rows == study.series.size() * study.series[0].points.size() * 3);
+  std::filesystem::remove(path);
+}
+
+// A Rayleigh quotient never exceeds the largest eigenvalue but for rounding and the reference's own error.
+BOOST_AUTO_TEST_CASE(along_a_drape_warm_starts_find_k0_with_fewer_products) {
+  const Drape drape{.side = 10};
+  const std::vector<Moment> moments = moments_of(drape, "symplectic-euler", 0.1, 5, quiet);
+  BOOST_TEST(moments.size() == 6);
+  BOOST_TEST(moments.back().time == 0.1, boost::test_tools::tolerance(1e-9));
+  const std::vector<K0Sample> samples = watch_k0(drape, moments, 1e-3, quiet);
+  std::array<long, 4> products{};
+  for (const K0Sample& sample : samples) {
+    BOOST_TEST(std::abs(sample.k0 / samples[0].k0 - 1) < 0.01);  // hardly stretched: by a few 1e-4
+    for (int way = 0; way < 4; ++way) {
+      BOOST_TEST(sample.searches[way].converged);
+      BOOST_TEST(sample.error(sample.searches[way]) < 1e-8);
+      BOOST_TEST(sample.error(sample.searches[way]) > -1e-3);
+      products[way] += sample.searches[way].products;
+    }
+  }
+  BOOST_TEST(2 * products[1] < products[0]);
+  BOOST_TEST(products[3] <= products[2]);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

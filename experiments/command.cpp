@@ -156,14 +156,13 @@ void add_complexity(CLI::App& app, const CommonOptions& common, ComplexityOption
       ->type_name("DIR")
       ->capture_default_str();
   command->footer(
-      "CPU time against the number of particles, the square root of k0 (rad/s) and implicit Euler's step "
-      "(s), "
-      "each with the\n"
-      "exponent of its growth and its 95 % confidence interval; medians of five interleaved rounds, about 5 "
+      "CPU time against the number of particles, the square root of k0 [1/s] and implicit Euler's step [s]: "
+      "the\n"
+      "exponent of its growth with a 95 % confidence interval, medians of five interleaved rounds, in 5 to 7 "
       "minutes.\n"
-      "JSON: claims[] {claim, paper, measured}; studies[] {name, series[] {name, exponent, half_width, "
-      "points[]}};\n"
-      "all_finished; rollbacks; provenance; files. Exit status 3: a run did not come to its end.\n\n"
+      "JSON: tables[] (as printed), studies[] {name, series[] {name, exponent, half_width, points[]}}, "
+      "all_finished,\n"
+      "rollbacks, provenance, files. Exit status 3: a run did not come to its end.\n\n"
       "example: springstab complexity --output figures");
   command->callback([&] { chosen = [&] { return run_complexity(common, o); }; });
 }

@@ -1,5 +1,5 @@
 // `springstab complexity`: runs the studies of what methods cost and holds them against the paper's claims.
-#include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <iostream>
 
@@ -11,73 +11,81 @@
 namespace springstab {
 namespace {
 
-struct Claim {
-  std::string claim, paper, measured;
-};
+/// The first row is the heading.
+using Table = std::vector<std::vector<std::string>>;
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string all;
-  for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
-  return all;
-}
-
-std::string exponents(const StudyResult& result) {
-  std::vector<std::string> parts;
-  for (const Series& series : result.series) {
-    const PowerLaw law = fit_seconds(result.study, series);
-    parts.push_back(text("%s %.3f ± %.3f", series.name.c_str(), law.exponent, law.half_width));
-  }
-  return joined(parts);
-}
-
-// Seconds of one contestant over the least of some others', at the sizes that the project reports.
-std::string ratios(const StudyResult& result, const std::string& name,
-                   const std::vector<std::string>& others) {
-  std::vector<std::string> parts;
-  const std::vector<HeatResult>& points = result.of(name).points;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const int side = points[i].heat.drape.side;
-    if (side < 16 || (side & (side - 1)) != 0) continue;
-    std::vector<double> seconds;
-    for (const std::string& other : others) seconds.push_back(result.of(other).points[i].median_seconds());
-    parts.push_back(
-        text("%.2f (%d²)", points[i].median_seconds() / *std::ranges::min_element(seconds), side));
-  }
-  return joined(parts);
-}
-
-std::string iterations(const Series& series) {
-  std::vector<std::string> parts;
-  for (const HeatResult& p : series.points)
-    parts.push_back(text("%ld (%.3g) at %g s", p.counts.cg_iterations,
-                         predicted_iterations(p) * static_cast<double>(p.steps), p.heat.interval));
-  return joined(parts);
-}
-
-std::string cheapest(const StudyResult& result) {
-  std::vector<std::string> parts;
-  for (const Series& series : result.series)
-    for (const HeatResult& p : series.points)
-      if (const double t = p.heat.contestant.cg_tolerance; t == 1e-2 || t == 1e-3 || t == 1e-6)
-        parts.push_back(text("%s %.3g s at %g", series.name.c_str(), p.median_seconds(), t));
-  return joined(parts);
-}
-
-std::vector<Claim> claims(const std::vector<StudyResult>& studies) {
-  const StudyResult &n = studies[0], &k0 = studies[1], &h = studies[2], &cg = studies[3];
-  const auto& sheets = n.of("LEU").points;
-  return {
-      {"CPU time against n, exponent", "1", exponents(n)},
-      {"CPU time against √k0, exponent", "1", exponents(k0)},
-      {"LEU's time over IMP's", "about ½", ratios(n, "LEU", {"IMP"})},
-      {"… over IMP's with LEU's D", "", ratios(n, "LEU", {"IMP, D of LEU"})},
-      {"… over the best implicit Euler's", "", ratios(n, "LEU", {"IMP", "IMP SSOR", "IMP SSOR 1e-6"})},
-      {"RK4 with linear force over EU", "< 1", ratios(n, "RK4 linear", {"EU"})},
-      {"IMP's CG iterations against h (Eq. 35)", "grow mildly as h shrinks", iterations(h.of("IMP"))},
-      {"IMP's seconds against CG tolerance", "", cheapest(cg)},
-      {"k0 as the sheet grows [1/s²]", "almost constant",
-       text("%.5g to %.5g", sheets.front().heat.k0.value, sheets.back().heat.k0.value)},
+Table exponents(const StudyResult& n, const StudyResult& k0) {
+  Table table{{"CPU time grows like", "the paper says", "measured, exponent of n", "of √k0"}};
+  const auto cell = [](const StudyResult& study, const Series& series) {
+    const PowerLaw law = fit_seconds(study.study, series);
+    return text("%.3f ± %.3f", law.exponent, law.half_width);
   };
+  for (const Series& series : n.series)
+    table.push_back({series.name, "n √k0", cell(n, series), cell(k0, k0.of(series.name))});
+  return table;
+}
+
+// At the sides that are powers of two from 16 on.
+Table ratios(const StudyResult& n) {
+  const struct {
+    std::string of, over, paper;
+  } rows[] = {{"LEU", "IMP", "about ½"},
+              {"LEU", "IMP, D of LEU", "about ½"},
+              {"LEU", "IMP SSOR", ""},
+              {"LEU", "IMP SSOR 1e-6", ""},
+              {"RK4 linear", "EU", "less than 1"}};
+  Table table{{"CPU time of … over that of …", "the paper says"}};
+  for (const auto& row : rows) table.push_back({row.of + " over " + row.over, row.paper});
+  const std::vector<HeatResult>& sheets = n.series.front().points;
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    const unsigned side = static_cast<unsigned>(sheets[i].heat.drape.side);
+    if (side < 16 || !std::has_single_bit(side)) continue;
+    table[0].push_back(text("%u²", side));
+    for (std::size_t r = 0; r < std::size(rows); ++r)
+      table[r + 1].push_back(text("%.2f", n.of(rows[r].of).points[i].median_seconds() /
+                                              n.of(rows[r].over).points[i].median_seconds()));
+  }
+  return table;
+}
+
+Table iterations(const StudyResult& h) {
+  Table table{{"IMP, h [s]", "CG iterations", "predicted (Eq. 35)", "with LEU's D", "predicted", "IMP SSOR",
+               "CPU time of IMP [s]"}};
+  const auto &imp = h.of("IMP").points, &damped = h.of("IMP, D of LEU").points,
+             &ssor = h.of("IMP SSOR").points;
+  const auto predicted = [](const HeatResult& p) {
+    return text("%.0f", predicted_iterations(p) * static_cast<double>(p.steps));
+  };
+  for (std::size_t i = 0; i < imp.size(); ++i)
+    table.push_back({text("%g", imp[i].heat.interval), text("%ld", imp[i].counts.cg_iterations),
+                     predicted(imp[i]), text("%ld", damped[i].counts.cg_iterations), predicted(damped[i]),
+                     text("%ld", ssor[i].counts.cg_iterations), text("%.3g", imp[i].median_seconds())});
+  return table;
+}
+
+Table tolerances(const StudyResult& cg) {
+  Table table{{"CPU time [s] (CG iterations) at a tolerance of"}};
+  for (const HeatResult& p : cg.series.front().points)
+    table[0].push_back(text("%g", p.heat.contestant.cg_tolerance));
+  for (const Series& series : cg.series) {
+    table.push_back({series.name});
+    for (const HeatResult& p : series.points)
+      table.back().push_back(text("%.3g (%ld)", p.median_seconds(), p.counts.cg_iterations));
+  }
+  return table;
+}
+
+std::string markdown(const Table& table) {
+  std::string all;
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    all += '|';
+    for (const std::string& cell : table[i]) all += " " + cell + " |";
+    all += '\n';
+    if (i > 0) continue;
+    for (std::size_t c = 0; c < table[0].size(); ++c) all += "|---";
+    all += "|\n";
+  }
+  return all;
 }
 
 Json json_of(const HeatResult& p, Study study) {
@@ -141,23 +149,21 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
   const std::string verdict =
       text("%s; %ld divergences were seen and undone",
            finished ? "every run stayed finite" : "not every run finished", rollbacks);
+  const StudyResult &n = studies[0], &k0 = studies[1], &h = studies[2], &cg = studies[3];
+  const std::vector<Table> tables{exponents(n, k0), ratios(n), iterations(h), tolerances(cg)};
   if (common.json) {
-    Json table = Json::array();
-    for (const Claim& c : claims(studies))
-      table.push_back({{"claim", c.claim}, {"paper", c.paper}, {"measured", c.measured}});
-    std::cout << Json{{"claims", table},
-                      {"studies", list},
-                      {"all_finished", finished},
-                      {"rollbacks", rollbacks},
-                      {"provenance", provenance()},
-                      {"files", files}}
+    std::cout << Json{{"tables", tables},           {"studies", list},
+                      {"all_finished", finished},   {"rollbacks", rollbacks},
+                      {"provenance", provenance()}, {"files", files}}
                      .dump(2)
               << '\n';
   } else {
-    std::cout << "| | the paper says | measured |\n|---|---|---|\n";
-    for (const Claim& c : claims(studies))
-      std::cout << "| " << c.claim << " | " << c.paper << " | " << c.measured << " |\n";
-    std::cout << '\n' << verdict << "; " << provenance() << '\n';
+    for (const Table& table : tables) std::cout << markdown(table) << '\n';
+    const std::vector<HeatResult>& sheets = n.series.front().points;
+    std::cout << text("k0 from %.5g 1/s² at n = %.0f to %.5g 1/s² at n = %.0f\n%s\n%s\n",
+                      sheets.front().heat.k0.value, abscissa(n.study, sheets.front()),
+                      sheets.back().heat.k0.value, abscissa(n.study, sheets.back()), verdict.c_str(),
+                      provenance().c_str());
   }
   return finished ? done : no_answer;
 }

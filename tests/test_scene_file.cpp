@@ -273,7 +273,7 @@ BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_named) {
 }
 
 BOOST_AUTO_TEST_CASE(the_hanging_net_is_the_papers) {
-  const auto root = std::filesystem::path(__FILE__).parent_path().parent_path();
+  const std::filesystem::path root(SPRINGSTAB_SOURCE_DIR);
   const SceneDescription scene = read_scene_file((root / "experiments/scenes/hanging_net_64.json").string());
   const Grid& grid = std::get<Grid>(scene.geometry);
   BOOST_TEST((grid.rows == 64 && grid.columns == 64 && grid.spacing == 0.025));

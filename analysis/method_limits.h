@@ -35,18 +35,23 @@ enum class LimitStatus {
   unknown     // not computed for this kind of damping
 };
 
+/// What h_max comes from: exact (for the given k0), or eigenvalues that may not be all that matter.
+enum class LimitSource { exact, estimate };
+
 /// Steps in seconds. Absent where there is none or it is not known; ∞ where nothing limits.
 struct MethodLimits {
   LimitStatus status = LimitStatus::unknown;
-  std::optional<double> h_max;        // supremum of the stable steps with the structure's own damping
-  std::optional<double> h_certified;  // proved stable, from the upper bound on k0; at most h_max
+  std::optional<double> h_max;  // supremum of the stable steps with the structure's own damping
+  LimitSource source = LimitSource::exact;
+  std::optional<double> h_certified;  // proved stable, at most h_max
   std::optional<double> recommended;  // with the safety factor; absent also where unlimited
   std::optional<DampingDesign> designed;
 };
 
 /// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method
 /// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);
-/// the others are unknown, as is everything when k0 did not converge. `safety` >= 1 acts on the stiffness.
+/// the others are unknown here (see general_damping.h), as is everything when k0 did not converge. `safety`
+/// >= 1 acts on the stiffness.
 MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
                            double safety);
 

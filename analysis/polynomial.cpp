@@ -140,6 +140,18 @@ Polynomial BivariatePolynomial::along(const Polynomial& x, const Polynomial& y) 
   return sum;
 }
 
+std::optional<std::array<double, 3>> BivariatePolynomial::affine() const {
+  std::array<double, 3> found{};
+  const Eigen::ArrayXXd value = without_noise().value_;
+  for (Eigen::Index a = 0; a < value.rows(); ++a)
+    for (Eigen::Index b = 0; b < value.cols(); ++b) {
+      if (value(a, b) == 0) continue;
+      if (a + b > 1) return std::nullopt;
+      found[static_cast<std::size_t>(a + 2 * b)] = value(a, b);
+    }
+  return found;
+}
+
 BivariatePolynomial BivariatePolynomial::without_noise() const {
   return {(value_.abs() <= noise * magnitude_).select(0.0, value_), magnitude_};
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -38,6 +39,8 @@ class BivariatePolynomial {
   BivariatePolynomial derivative_x() const;
   /// p(X(t), Y(t)), noise removed.
   Polynomial along(const Polynomial& x, const Polynomial& y) const;
+  /// c, a, b where the polynomial is c + a X + b Y.
+  std::optional<std::array<double, 3>> affine() const;
   /// The same with coefficients below 1e-14 of their magnitude sums set to 0.
   BivariatePolynomial without_noise() const;
 
@@ -67,6 +70,10 @@ class RationalFunction {
   double operator()(double x, double y) const { return numerator_(x, y) / denominator()(x, y); }
   const BivariatePolynomial& numerator() const { return numerator_; }
   BivariatePolynomial denominator() const;
+  /// c, a, b where the function is c + a X + b Y.
+  std::optional<std::array<double, 3>> affine() const {
+    return factors_.empty() ? numerator_.affine() : std::nullopt;
+  }
 
   friend RationalFunction operator+(const RationalFunction& f, const RationalFunction& g);
   friend RationalFunction operator-(const RationalFunction& f);

@@ -8,19 +8,17 @@
 #include <memory>
 #include <stdexcept>
 
+#include "analysis/definiteness.h"
+
 namespace springstab {
 namespace {
 
 using Cholesky = Eigen::SimplicialLLT<SparseMatrix>;
 
-constexpr Eigen::Index dense_limit = 150;
-constexpr Eigen::Index factorization_limit = 150'000;
 constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
-Eigen::VectorXd inverse_root_mass(const StructuralMatrices& s) {
-  return s.mass.diagonal().cwiseSqrt().cwiseInverse();
-}
+Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
 
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
   SparseMatrix b = d.asDiagonal() * a;
@@ -32,20 +30,16 @@ double largest_row_sum(const SparseMatrix& a) {
 }
 
 StiffestMode dense_spectrum(const LinearOperator& s) {
-  Eigen::MatrixXd matrix(s.size, s.size);
-  Eigen::VectorXd column;
-  for (Eigen::Index j = 0; j < s.size; ++j) {
-    s.apply(Eigen::VectorXd::Unit(s.size, j), column);
-    matrix.col(j) = column;
-  }
+  const Eigen::MatrixXd matrix = as_dense(s);
   if (!matrix.allFinite())
     throw std::invalid_argument("the mass-scaled stiffness is not finite, expected finite matrices");
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (matrix + matrix.transpose()));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
   StiffestMode mode;
   mode.converged = solver.info() == Eigen::Success;
   if (!mode.converged) return mode;
   mode.value = solver.eigenvalues().tail<1>()[0];
   mode.smallest = solver.eigenvalues()[0];
+  Eigen::VectorXd column;
   s.apply(solver.eigenvectors().rightCols<1>(), column);
   mode.residual = (column - mode.value * solver.eigenvectors().rightCols<1>()).stableNorm();
   return mode;
@@ -62,52 +56,37 @@ StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& optio
   return mode;
 }
 
-// A bound on how far the factorization's rounding may have moved the eigenvalues: Σ γ(l_i + 2) a_ii, where
-// l_i counts row i of the factor (Rump 2006, Verification of positive definiteness, BIT 46).
-double factorization_error(const Cholesky& factor, double largest_diagonal) {
-  const SparseMatrix& l = factor.matrixL().nestedExpression();
-  return 1.01 * unit_roundoff * static_cast<double>(l.nonZeros() + 2 * l.rows()) * largest_diagonal;
-}
-
 }  // namespace
 
-// With a diagonal mass it is a matrix; else L⁻¹ P K Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
-LinearOperator scaled_stiffness(const StructuralMatrices& s) {
-  if (is_diagonal(s.mass)) {
-    const auto matrix = std::make_shared<SparseMatrix>(scaled(s.stiffness, inverse_root_mass(s)));
-    return {s.size(),
+// With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
+LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
+  if (is_diagonal(mass)) {
+    const auto matrix = std::make_shared<SparseMatrix>(scaled(a, inverse_root(mass)));
+    return {a.rows(),
             [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; }};
   }
-  const auto mass = std::make_shared<Cholesky>(s.mass);
-  return {s.size(), [mass, &s](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-            out = mass->permutationPinv() * mass->matrixU().solve(in);
-            out = mass->permutationP() * (s.stiffness * out).eval();
-            mass->matrixL().solveInPlace(out);
+  const auto factor = std::make_shared<Cholesky>(mass);
+  return {a.rows(), [factor, &a](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+            out = factor->permutationPinv() * factor->matrixU().solve(in);
+            out = factor->permutationP() * (a * out).eval();
+            factor->matrixL().solveInPlace(out);
           }};
 }
 
-bool is_below(const StructuralMatrices& s, double sigma) {
-  const Eigen::VectorXd d = inverse_root_mass(s);
-  const SparseMatrix mass = scaled(s.mass, d), stiffness = scaled(s.stiffness, d);
-  const SparseMatrix a = sigma * mass - stiffness;
-  const double forming_error =
-      8 * unit_roundoff * (std::abs(sigma) * largest_row_sum(mass) + largest_row_sum(stiffness));
-  const double largest_diagonal = Eigen::VectorXd(a.diagonal()).maxCoeff();
-  if (!std::isfinite(forming_error) || !(largest_diagonal > 0)) return false;
+LinearOperator scaled_stiffness(const StructuralMatrices& s) { return mass_scaled(s.stiffness, s.mass); }
 
-  SparseMatrix identity(s.size(), s.size());
-  identity.setIdentity();
-  Cholesky factor;
-  factor.analyzePattern(a);
-  double shift = forming_error;
-  for (int attempt = 0; attempt < 3; ++attempt) {  // the shift depends on the factor, a little
-    factor.factorize(a - shift * identity);
-    if (factor.info() != Eigen::Success) return false;
-    const double needed = forming_error + factorization_error(factor, largest_diagonal);
-    if (shift >= needed) return true;
-    shift = 1.1 * needed;
+Eigen::MatrixXd as_dense(const LinearOperator& a) {
+  Eigen::MatrixXd matrix(a.size, a.size);
+  Eigen::VectorXd column;
+  for (Eigen::Index j = 0; j < a.size; ++j) {
+    a.apply(Eigen::VectorXd::Unit(a.size, j), column);
+    matrix.col(j) = column;
   }
-  return false;
+  return 0.5 * (matrix + matrix.transpose());
+}
+
+bool is_below(const StructuralMatrices& s, double sigma) {
+  return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);
 }
 
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
@@ -120,15 +99,16 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
   StiffestMode mode = estimated_stiffest_mode(s, options);
   if (is_diagonal(s.mass)) {
-    const SparseMatrix matrix = scaled(s.stiffness, inverse_root_mass(s));
+    const SparseMatrix matrix = scaled(s.stiffness, inverse_root(s.mass));
     mode.upper_bound = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
   }
-  if (!mode.converged || s.size() > factorization_limit) return mode;
+  if (!mode.converged || s.size() > DefinitenessProof::factorization_limit) return mode;
 
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;
   double gap = std::max(mode.residual, 1e-10 * scale);
-  while (mode.value + gap < mode.upper_bound && !is_below(s, mode.value + gap)) gap *= 8;
+  DefinitenessProof proof({s.stiffness, s.mass, {}});
+  while (mode.value + gap < mode.upper_bound && !proof.holds(mode.value + gap, 0, 1)) gap *= 8;
   if (mode.value + gap < mode.upper_bound) {
     mode.upper_bound = mode.value + gap;
     mode.bound_kind = BoundKind::inertia;

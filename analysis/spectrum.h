@@ -27,8 +27,17 @@ struct StiffestMode {
   bool indefinite = false;         // some eigenvalue is below -1e-9 k0: the structure itself is unstable
 };
 
+/// Up to as many unknowns eigenvalues are computed densely.
+inline constexpr Eigen::Index dense_limit = 150;
+
+/// M^(-1/2) A M^(-1/2), or L⁻¹AL⁻ᵀ with M = LLᵀ, as an operator, which may refer to `a`.
+LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass);
+
 /// S as an operator, which may refer to `s`.
 LinearOperator scaled_stiffness(const StructuralMatrices& s);
+
+/// The matrix of a symmetric operator, column by column; its symmetric part.
+Eigen::MatrixXd as_dense(const LinearOperator& a);
 
 /// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Above 150 000 unknowns nothing is factorized: the
 /// bound is Gershgorin's and definiteness is not tested.

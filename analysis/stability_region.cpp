@@ -182,6 +182,27 @@ StabilityRegion::Column StabilityRegion::column(double x, double y_min, double y
   return {x, stable_intervals({{{x}}, {{0, 1}}}, y_min, y_max)};
 }
 
+std::optional<HalfPlane> StabilityRegion::exact_condition() const {
+  // Entries affine in X and Y stand for one matrix each, free of the order of products; a row of constants
+  // then eliminates x or v.
+  std::array<std::array<double, 3>, 4> entry;
+  for (std::size_t i = 0; i < entry.size(); ++i) {
+    const auto affine = amplification_[i].affine();
+    if (!affine) return std::nullopt;
+    entry[i] = *affine;
+  }
+  const auto constant = [&](std::size_t i) { return entry[i][1] == 0 && entry[i][2] == 0; };
+  if (!(constant(0) && constant(1) && entry[1][0] != 0) && !(constant(2) && constant(3) && entry[2][0] != 0))
+    return std::nullopt;
+  for (const Bound bound : {Bound::complex_pair, Bound::plus_one}) {  // these hold on the whole quadrant
+    const auto c = jury_[static_cast<std::size_t>(bound)].affine();
+    if (!c || std::any_of(c->begin(), c->end(), [](double v) { return v < 0; })) return std::nullopt;
+  }
+  const auto c = jury_[static_cast<std::size_t>(Bound::minus_one)].affine();
+  if (!c || !((*c)[0] > 0) || (*c)[1] > 0 || (*c)[2] > 0) return std::nullopt;
+  return HalfPlane{-(*c)[1], -(*c)[2], (*c)[0]};
+}
+
 // Every x in (left.x, right.x) where the structure changes, to the last bit, appended to `breaks`.
 void StabilityRegion::find_breaks(Column left, const Column& right, double y_min, double y_max,
                                   std::vector<double>& breaks) const {

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -61,6 +62,11 @@ struct RegionConstants {
   bool covers_quadrant;       // every X > 0, Y > 0 is stable: no positive semidefinite D, K limits h
 };
 
+/// x X + y Y <= bound.
+struct HalfPlane {
+  double x, y, bound;
+};
+
 /// The best line for Rayleigh damping from (x0, 0): X = x0 + slope·Y is stable or neutral for 0 < Y < reach.
 struct DampingLine {
   double slope;
@@ -87,6 +93,13 @@ class StabilityRegion {
   const RegionConstants& constants() const { return constants_; }
 
   DampingLine damping_line(double x0) const;
+
+  /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and 1 + T + Δ >= 0 is a half-plane that is
+  /// exact for matrices: a method of one force a step, whose λ² - Tλ + Δ is affine in hD' and h²K'. Then for
+  /// any symmetric positive semidefinite D', K', which need not commute, the method is stable for
+  /// x hD' + y h²K' < bound and, as λ² - Tλ + Δ has a negative eigenvalue at -1 and none at -∞, unstable
+  /// beyond (theory: symplectic Euler's limit is the root of λ_max(2hD' + h²K') = 4).
+  std::optional<HalfPlane> exact_condition() const;
 
   /// Area inside the window, to about 12 digits. These four throw std::invalid_argument for an empty window.
   double area(const Window& window) const;

@@ -82,7 +82,11 @@ void add_limits(CLI::App& app, const CommonOptions& common, LimitsOptions& o, st
   command->footer(
       "h_max [s]: every smaller step keeps every mode bounded, with the input's own damping. certified [s]: "
       "proved.\n"
-      "use [s]: with the safety factor. With fitted damping: the largest step over all alpha, and that alpha "
+      "use [s]: with the safety factor. JSON: h_max_source is exact (for the given k0) or estimate; "
+      "h_every_pose "
+      "is proved\n"
+      "for every pose of a spring scene whose K is semidefinite. With fitted damping: the largest step over "
+      "all alpha, and that alpha "
       "[s].\n"
       "Exit status 3: the --method asked for has no stable step.\n\n"
       "examples: springstab limits --grid 32x32 --pin first-row\n"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "analysis/method_limits.h"
+#include "analysis/general_damping.h"
 #include "experiments/experiments.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"
@@ -62,10 +62,13 @@ Json k0_json(const StiffestMode& k0) {
           {"smallest", number(k0.smallest)}};
 }
 
+const char* name(LimitSource source) { return source == LimitSource::exact ? "exact" : "estimate"; }
+
 Json limits_json(std::string_view method, const MethodLimits& limits, double d0) {
   Json json{{"name", method},
             {"status", name(limits.status)},
             {"h_max", number(limits.h_max)},
+            {"h_max_source", limits.h_max ? Json(name(limits.source)) : Json()},
             {"h_certified", number(limits.h_certified)},
             {"recommended_step", number(limits.recommended)},
             {"designed", nullptr}};
@@ -120,23 +123,37 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
 
   struct Row {
     std::string_view method;
-    MethodLimits limits;  // all unknown if k0 is not
+    MethodLimits limits;                 // all unknown if k0 is not
+    std::optional<double> h_every_pose;  // proved for every pose [s]
   };
   std::vector<Row> rows;
+  const bool general = damping.kind == DampingModel::Kind::general && k0.converged;
+  std::optional<GeneralDamping> general_damping;
+  if (general)
+    general_damping.emplace(structure, k0, damping, options.safety, true, ArpackOptions{.seed = common.seed});
+  const std::optional<StructuralMatrices> every_pose = subject.every_pose();
   int status = k0.converged ? done : no_answer;
   for (const MethodInfo& info : all_methods()) {
     if (!options.method.empty() && info.name != options.method) continue;
     MethodLimits limits;
-    if (k0.converged) limits = method_limits(info.name, k0, damping, options.safety);
+    if (k0.converged)
+      limits = general ? general_damping->limits(info.name)
+                       : method_limits(info.name, k0, damping, options.safety);
+    std::optional<double> h_every_pose;
+    if (const auto condition = stability_region(info.name).exact_condition(); condition && every_pose)
+      h_every_pose = proved_limit(*every_pose, *condition, {.seed = common.seed});
     if (limits.status == LimitStatus::unlimited) limits.recommended = options.max_step;
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
-    rows.push_back({info.name, limits});
+    rows.push_back({info.name, limits, h_every_pose});
   }
 
   if (common.json) {
     Json list = Json::array();
-    for (const Row& row : rows) list.push_back(limits_json(row.method, row.limits, damping.d0));
+    for (const Row& row : rows) {
+      list.push_back(limits_json(row.method, row.limits, damping.d0));
+      list.back()["h_every_pose"] = number(row.h_every_pose);
+    }
     std::cout << Json{{"degrees_of_freedom", structure.size()},
                       {"condensed", structure.condensed},
                       {"k0", k0_json(k0)},
@@ -149,6 +166,10 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   } else if (k0.converged) {
     print(structure, k0, damping, options.safety);
     for (const Row& row : rows) print(row.method, row.limits);
+    for (const Row& row : rows)
+      if (row.h_every_pose)
+        std::cout << text("\n%s is stable below %.6g s in every pose of these springs: proved\n",
+                          std::string(row.method).c_str(), *row.h_every_pose);
   } else {
     std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products,
                       k0.upper_bound);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/method_limits.h"
+#include "analysis/general_damping.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"
 
@@ -31,11 +31,19 @@ StiffestMode StepChooser::k0_at(const State<Vector>& state, double tolerance) {
   return estimated_stiffest_mode(subject_.structure(state), {.tolerance = tolerance, .seed = common_.seed});
 }
 
-std::optional<double> StepChooser::recommended(const StiffestMode& k0) {
-  if (!k0.converged) return reason_ = "k0 did not converge", std::nullopt;
+MethodLimits StepChooser::limits(const StiffestMode& k0, const State<Vector>& state) {
   DampingModel damping = subject_.damping();
   if (designed_) damping.kind = DampingModel::Kind::designed;
-  const MethodLimits limits = method_limits(options_.method, k0, damping, options_.safety);
+  if (damping.kind != DampingModel::Kind::general)
+    return method_limits(options_.method, k0, damping, options_.safety);
+  const StructuralMatrices structure = subject_.structure(state);
+  return GeneralDamping(structure, k0, damping, options_.safety, false, {.seed = common_.seed})
+      .limits(options_.method);
+}
+
+std::optional<double> StepChooser::recommended(const StiffestMode& k0, const State<Vector>& state) {
+  if (!k0.converged) return reason_ = "k0 did not converge", std::nullopt;
+  const MethodLimits limits = this->limits(k0, state);
   if (limits.status == LimitStatus::none)
     return reason_ = "no positive step of " + options_.method +
                      " is stable with this damping; choose another method (see springstab limits) or "
@@ -72,7 +80,8 @@ std::optional<StepPlan> StepChooser::first_plan() {
 }
 
 std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {
-  const std::optional<double> step = options_.step ? options_.step : recommended(k0);
+  const std::optional<double> step =
+      options_.step ? options_.step : recommended(k0, subject_.initial_state(common_.seed));
   if (!step) return std::nullopt;
   least_step_ = hopeless * std::min(*step, options_.duration);
   return plan(*step, options_.duration);
@@ -89,7 +98,7 @@ EnergyWatch StepChooser::watch(const State<Vector>& start) {
 
 std::optional<StepPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {
   if (options_.step || !subject_.scene()) return std::nullopt;
-  double step = recommended(k0_at(state, quick_tolerance)).value_or(h_ / 2);
+  double step = recommended(k0_at(state, quick_tolerance), state).value_or(h_ / 2);
   if (step >= h_ * (1 - 1e-9)) step = method_.linearized && relinearize_ > h_ ? h_ : h_ / 2;
   if (step < least_step_) return std::nullopt;
   if (method_.linearized) relinearize_ = std::max(relinearize_ / 2, step);

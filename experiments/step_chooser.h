@@ -41,7 +41,8 @@ class StepChooser {
 
  private:
   StiffestMode k0_at(const State<Vector>& state, double tolerance);
-  std::optional<double> recommended(const StiffestMode& k0);
+  std::optional<double> recommended(const StiffestMode& k0, const State<Vector>& state);
+  MethodLimits limits(const StiffestMode& k0, const State<Vector>& state);
   StepPlan plan(double largest_step, double duration);
   std::optional<StepPlan> after_divergence(double time, const State<Vector>& state);
 

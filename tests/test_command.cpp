@@ -177,13 +177,23 @@ BOOST_AUTO_TEST_CASE(no_answer_is_status_3_and_prints_what_is_known) {
   BOOST_TEST((*this)("limits --grid 4x4 --certify --method rk4").status == 0);
 }
 
-BOOST_AUTO_TEST_CASE(springs_with_their_own_damping_have_unknown_limits_but_run_when_given_a_step) {
+BOOST_AUTO_TEST_CASE(springs_with_their_own_damping_have_an_exact_limit_under_symplectic_euler) {
   const fs::path scene = file("scene.json", R"({"geometry": {"grid": [4, 4]}, "pins": "first-row",
     "material": {"damping": {"structural": 1e-4, "shear": 1e-4, "bending": 1e-4}}})");
   const Json report = (*this)("limits scene.json --json").json();
   BOOST_TEST(report["damping"]["kind"] == "general");
   BOOST_TEST(by_name(report["methods"], "rk4")["status"] == "unknown");
   BOOST_TEST(by_name(report["methods"], "implicit-euler")["status"] == "unlimited");
+  const Json exact = by_name(report["methods"], "symplectic-euler");
+  BOOST_TEST(exact["status"] == "limited");
+  BOOST_TEST(exact["h_max_source"] == "exact");
+  BOOST_TEST(exact["h_certified"].get<double>() <= exact["h_max"].get<double>());
+  BOOST_TEST(exact["h_certified"].get<double>() > (1 - 1e-6) * exact["h_max"].get<double>());
+  BOOST_TEST(exact["recommended_step"].get<double>() < exact["h_max"].get<double>());
+  BOOST_TEST(exact["h_every_pose"].get<double>() <= exact["h_max"].get<double>() * (1 + 1e-9));
+  const Json run = (*this)("simulate scene.json --method symplectic-euler --duration 0.1 --json").json();
+  BOOST_TEST(run["status"] == "done");
+  BOOST_TEST(run["step"].get<double>() <= exact["recommended_step"].get<double>() * (1 + 1e-9));
   BOOST_TEST((*this)("simulate scene.json --method rk4 --duration 0.1").status == 3);
   BOOST_TEST((*this)("simulate scene.json --method rk4 --duration 0.1 --step 5e-4").status == 0);
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <random>
+#include <type_traits>
 
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/io/obj.h"
+#include "solvers/scene/every_pose.h"
 
 namespace springstab {
 namespace {
@@ -153,6 +155,8 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, con
   rayleigh_ = description.damping;
   initial_ = description.initial;
   const std::vector<int> pinned = resolve(description.pins, grid, static_cast<int>(cloth.rest.size()));
+  if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
+  pinned_ = pinned;
   const std::string pins_source = description.pins.source.empty() ? source : description.pins.source;
   scene_ = naming(pins_source, [&] {
     return std::make_unique<Scene>(cloth, pinned, description.gravity,
@@ -201,13 +205,20 @@ EnergyWatch Subject::energy_watch(const State<Vector>& start) {
 
 StructuralMatrices Subject::structure(const State<Vector>& state) {
   if (matrices_) return matrices_->matrices();
-  const BlockLinearSystem& linear = scene_->linearized(state.x, state.v);
+  BlockLinearSystem& linear = scene_->linearized(state.x, state.v);
   StructuralMatrices s;
   s.stiffness = linear.stiffness().to_sparse();
   Vector mass(scene_->size());
   for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = linear.mass()[i / 3];
   s.mass = SparseMatrix(mass.asDiagonal());
+  if (const BlockSparseMatrix* own = linear.own_damping())
+    s.damping = linear.damping().d0 * s.mass + linear.damping().alpha * s.stiffness + own->to_sparse();
   return s;
+}
+
+std::optional<StructuralMatrices> Subject::every_pose() const {
+  if (!net_) return std::nullopt;
+  return springstab::every_pose(*net_, pinned_, {rayleigh_.d0, rayleigh_.alpha.value_or(0)});
 }
 
 DampingModel Subject::damping() {

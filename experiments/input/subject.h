@@ -44,9 +44,12 @@ class Subject {
   State<Vector> initial_state(std::uint64_t seed);
   EnergyWatch energy_watch(const State<Vector>& start);
 
-  /// K and M at a state (matrices are the same at all), and what kind of damping there is.
+  /// K and M at a state (matrices are the same at all), D where it is of kind `general`, and what kind of
+  /// damping there is.
   StructuralMatrices structure(const State<Vector>& state);
   DampingModel damping();
+  /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
+  std::optional<StructuralMatrices> every_pose() const;
 
   /// Leaves alpha to the design, as "alpha": "designed" does. Throws InputError for matrices.
   void design_damping();
@@ -63,6 +66,8 @@ class Subject {
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<MatrixSystem> matrices_;
   std::vector<std::vector<int>> faces_;
+  std::optional<SpringNet> net_;  // of a scene of springs
+  std::vector<int> pinned_;
   std::optional<Material> material_;
   RayleighDescription rayleigh_;
   InitialDescription initial_;

@@ -1,0 +1,32 @@
+// Proofs by Cholesky factorization that a matrix is positive definite in spite of rounding.
+#pragma once
+
+#include <memory>
+
+#include "solvers/linear/structural_matrices.h"
+
+namespace springstab {
+
+/// Of one structure, with one symbolic factorization for all its proofs.
+class DefinitenessProof {
+ public:
+  /// Copies what it needs, scaled so that the mass has a unit diagonal. Where there are more than
+  /// `factorization_limit` unknowns nothing is factorized, and only diagonally dominant matrices are proved.
+  explicit DefinitenessProof(const StructuralMatrices& s);
+  ~DefinitenessProof();
+  DefinitenessProof(DefinitenessProof&&) noexcept;
+
+  static constexpr Eigen::Index factorization_limit = 150'000;
+
+  /// Whether c M - a D - b K is proved to be positive definite. No proof is no proof of the contrary.
+  bool holds(double c, double a, double b);
+
+ private:
+  struct Factor;
+
+  SparseMatrix mass_, damping_, stiffness_;
+  double mass_size_, damping_size_, stiffness_size_;  // largest absolute row sums
+  std::unique_ptr<Factor> factor_;
+};
+
+}  // namespace springstab

@@ -1,0 +1,57 @@
+// Stable steps of structures whose D' does not commute with K', as dampers along springs do not: exact where
+// a method's condition is one for matrices (StabilityRegion::exact_condition).
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "analysis/definiteness.h"
+#include "analysis/method_limits.h"
+#include "analysis/numerical_range.h"
+
+namespace springstab {
+
+/// K -> F K and D -> D + β K: with a safety factor F the damping stays, β = 0, or α does, β = (F - 1) α.
+struct Stiffening {
+  double factor = 1;         // F
+  double added_damping = 0;  // β [s]
+
+  ModePoint operator()(const ModePoint& p) const { return {p.d + added_damping * p.k, factor * p.k}; }
+};
+
+/// The h at which λ_max(x hD' + y h²K') = bound; ∞ where D' = K' = 0; nothing when an eigenvalue did not
+/// converge. x, y >= 0 and bound > 0; D', K' are those of `range`, stiffened.
+std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
+                                  const Stiffening& stiffening = {});
+
+/// The largest step found below `h` at which x hD' + y h²K' < bound is proved; nothing where none was.
+std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h);
+
+/// Below what it returns a method with that exact condition is stable for these matrices, K and D positive
+/// semidefinite: proved. Nothing where no proof was found.
+std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane& condition,
+                                   const ArpackOptions& options = {});
+
+/// All that `limits` says of one structure with damping of kind `general`.
+class GeneralDamping {
+ public:
+  /// `s`, with its damping, and `k0` must outlive it. Without `proofs` nothing is certified, which is
+  /// quicker.
+  GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
+                 double safety, bool proofs, const ArpackOptions& options = {});
+  ~GeneralDamping();
+
+  /// Unknown where K or D is indefinite.
+  MethodLimits limits(std::string_view method);
+
+ private:
+  void add_exact(const HalfPlane& condition, MethodLimits& limits);
+
+  const StiffestMode& k0_;
+  DampingModel damping_;
+  double safety_;
+  NumericalRange range_;
+  std::optional<DefinitenessProof> proof_;
+};
+
+}  // namespace springstab

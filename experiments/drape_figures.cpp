@@ -48,8 +48,7 @@ Json draw_meshes(const Drape& drape, const std::vector<Moment>& moments, const s
                  const std::string& base) {
   write_meshes(base + ".csv", drape, moments);
   std::string settings =
-      "data=" + gnuplot_literal(base + ".csv") +
-      text("; side=%d; frames=%zu; width=%g; ", drape.side, moments.size(), 0.025 * (drape.side - 1));
+      "data=" + gnuplot_literal(base + ".csv") + text("; side=%d; frames=%zu; ", drape.side, moments.size());
   for (std::size_t i = 0; i < moments.size(); ++i) settings += text("time_%zu=%.3f; ", i, moments[i].time);
   std::vector<std::string> files = draw(script, settings, base);
   files.push_back(base + ".csv");

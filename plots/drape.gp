@@ -1,5 +1,5 @@
 # A draping cloth as a lit surface with its mesh, axes to one scale.
-# Needs: type ('svg' or 'png'), output_file, data (x,z,y by rows), side, width, time_0.
+# Needs: type ('svg' or 'png'), output_file, data (x,z,y by rows), side, time_0.
 
 if (type eq 'svg') {
     set terminal svg size 800,660 font 'DejaVu Sans,14' background '#ffffff'

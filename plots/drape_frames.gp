@@ -1,6 +1,6 @@
 # Frames of a draping cloth, side by side and to one scale.
 # Needs: type ('svg' or 'png'), output_file, data (x,z,y by rows, two blank lines between frames), side, frames,
-# width, time_0, time_1, ...
+# time_0, time_1, ...
 
 if (type eq 'svg') {
     set terminal svg size 1200,660 font 'DejaVu Sans,14' background '#ffffff'
@@ -30,7 +30,7 @@ set pm3d depthorder border lc rgb '#0a3d62' lw 0.3 lighting primary 0.45 specula
 set multiplot layout 2, (frames + 1) / 2 margins 0.01, 0.99, 0.0, 0.88 spacing 0.01, 0.03 \
     title sprintf('A cloth of %d×%d particles, held in its middle', side, side) font ',17'
 do for [i = 0:frames - 1] {
-    set title sprintf('%.2f s', value(sprintf('time_%d', i))) offset 0, -0.5
+    set title sprintf('%.2f s', value(sprintf('time_%d', i))) offset 0, 1.2
     splot data index i using 1:2:3 with pm3d
 }
 unset multiplot

@@ -96,7 +96,7 @@ void add_limits(CLI::App& app, const CommonOptions& common, LimitsOptions& o, st
 }
 
 void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o, std::string& damping,
-                  std::string& hessian, std::function<int()>& chosen) {
+                  std::string& hessian, std::string& solver, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("simulate", "Runs a scene, a mesh or matrices");
   add_input(*command, o.input);
   command->add_option("--method", o.method, "one of " + method_names())->required()->type_name("NAME");
@@ -128,6 +128,11 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
   command->add_option("--frames", o.frames, "number of frames after the first, evenly spaced")
       ->capture_default_str();
   command
+      ->add_option("--solver", solver,
+                   "of implicit Euler's linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")
+      ->check(CLI::IsMember({"cg", "direct"}))
+      ->capture_default_str();
+  command
       ->add_option("--cg-tolerance", o.cg_tolerance,
                    "relative residual of implicit Euler's conjugate gradients")
       ->capture_default_str();
@@ -145,6 +150,7 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
     chosen = [&] {
       o.designed_damping = damping == "designed";
       o.projected_hessian = hessian == "projected";
+      o.direct = solver == "direct";
       return run_simulate(common, o);
     };
   });
@@ -196,7 +202,7 @@ int run_command(int argc, const char* const* argv) {
   SimulateOptions simulate;
   ComplexityOptions complexity{.plots = SPRINGSTAB_PLOTS_DIR, .output = ""};
   FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
-  std::string damping = "own", hessian = "exact";
+  std::string damping = "own", hessian = "exact", solver = "cg";
   std::function<int()> chosen;
 
   CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
@@ -216,7 +222,7 @@ int run_command(int argc, const char* const* argv) {
   add_methods(app, common, chosen);
   add_region(app, common, region, chosen);
   add_limits(app, common, limits, chosen);
-  add_simulate(app, common, simulate, damping, hessian, chosen);
+  add_simulate(app, common, simulate, damping, hessian, solver, chosen);
   add_complexity(app, common, complexity, chosen);
   add_figures(app, common, figures, chosen);
 

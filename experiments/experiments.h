@@ -69,6 +69,7 @@ struct SimulateOptions {
   std::string format = "obj";
   int frames = 100;
   double cg_tolerance = 1e-6;
+  bool direct = false;  // a factorization instead of conjugate gradients
 };
 int run_simulate(const CommonOptions& common, const SimulateOptions& options);
 

@@ -66,8 +66,8 @@ void add_assembly(Json& parts, Scene& scene, const State<Vector>& at, double tim
                          seconds_each([&] { term->add_damping(x, *linear.own_damping()); }), times));
 }
 
-// Products with K and D, and the iterations of the conjugate gradients.
-void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, double products,
+// Products with K and D, and solving: a factorization, or the iterations of conjugate gradients.
+void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, double products, bool solves,
                  double iterations) {
   BlockLinearSystem& linear = scene.linearized(at.x, at.v);
   Vector out(scene.size());
@@ -81,11 +81,15 @@ void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, d
   };
   add_product("blocks of K", linear.stiffness());
   if (linear.own_damping()) add_product("blocks of D", *linear.own_damping());
-  if (iterations == 0) return;
+  if (!solves) return;
   SolveReport report;
   const double seconds = seconds_each([&] { report = linear.solve_shifted(h, at.x, out); });
-  parts.push_back(part("conjugate gradients", scene.size(), "iteration",
-                       seconds / static_cast<double>(std::max(1L, report.iterations)), iterations));
+  if (scene.solver().kind == SolverKind::cholesky) {
+    parts.push_back(part("Cholesky factorization", scene.size(), "solve", seconds, 1));
+  } else {
+    parts.push_back(part("conjugate gradients", scene.size(), "iteration",
+                         seconds / static_cast<double>(std::max(1L, report.iterations)), iterations));
+  }
 }
 
 std::vector<std::string> absent_parts(const SpringMaterial& material) {
@@ -133,7 +137,7 @@ Json explain(Subject& subject, std::string_view method, const StepPlan& plan, co
   if (counts.hessian_assemblies > 0) {
     add_assembly(parts, scene, start, a_step(counts.hessian_assemblies));
     add_algebra(parts, scene, start, plan.h, a_step(counts.block_products - counts.cg_iterations),
-                a_step(counts.cg_iterations));
+                find_method(method).implicit, a_step(counts.cg_iterations));
   }
   return {{"particles", scene.particles()},
           {"pinned", scene.particles() - scene.free_particles()},

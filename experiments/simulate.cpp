@@ -139,7 +139,11 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     return no_answer;
   }
   const double h = plan->h;
-  if (Scene* scene = subject.scene()) scene->solver().tolerance = options.cg_tolerance;
+  if (options.direct && !subject.scene())
+    throw InputError("--solver", 0, "is for scenes; systems of matrices are always solved directly");
+  if (Scene* scene = subject.scene())
+    scene->solver() = {.kind = options.direct ? SolverKind::cholesky : SolverKind::conjugate_gradients,
+                       .tolerance = options.cg_tolerance};
 
   const State<Vector> start = subject.initial_state(common.seed);
   const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
@@ -184,7 +188,8 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   if (Scene* scene = subject.scene()) {
     const Eigen::Vector3d last = scene->positions(state.x).back();
     report["last_particle"] = {{"position", {last.x(), last.y(), last.z()}}};
-    report["cg_tolerance"] = options.cg_tolerance;
+    report["solver"] = options.direct ? "direct" : "cg";
+    report["cg_tolerance"] = options.direct ? Json() : Json(options.cg_tolerance);
   }
   if (options.explain) report["explanation"] = explanation;
   if (common.json) {

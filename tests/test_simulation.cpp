@@ -516,23 +516,64 @@ BOOST_AUTO_TEST_CASE(a_step_costs_what_its_method_says) {
       }
 }
 
+// What is left of the difference is the tolerance of the conjugate gradients.
+BOOST_AUTO_TEST_CASE(a_factorization_takes_the_steps_of_conjugate_gradients) {
+  for (const double own_damping : {0.0, 1e-4}) {
+    Scene scene = cloth(8, {1, 1e-3}, own_damping);
+    CountingSystem iterated(scene), factorized(scene);
+    State<Vector> by_iteration = scene.rest_state(), by_factorization = by_iteration;
+    constexpr long steps = 20;
+    scene.solver().tolerance = 1e-12;
+    simulate(iterated, *make_stepper("implicit-euler"), {0.01, steps}, asleep, by_iteration);
+    scene.solver().kind = SolverKind::cholesky;
+    const SimulationResult result =
+        simulate(factorized, *make_stepper("implicit-euler"), {0.01, steps}, asleep, by_factorization);
+    BOOST_TEST((result.status == StepStatus::done));
+    BOOST_TEST((by_factorization.x - by_iteration.x).norm() <= 1e-9 * by_iteration.x.norm());
+    BOOST_TEST((by_iteration.x - scene.rest_state().x).norm() > 0.01);
+    BOOST_TEST(iterated.counts().cg_iterations > steps);
+    BOOST_TEST(factorized.counts().cg_iterations == 0);
+    BOOST_TEST(factorized.counts().block_products == steps);
+    BOOST_TEST(factorized.counts().hessian_assemblies == steps);
+  }
+}
+
+// Springs pressed to half their length push their ends aside.
+BOOST_AUTO_TEST_CASE(a_factorization_refuses_a_compressed_net_at_a_long_step) {
+  Scene scene = cloth(6, {0, 0}, 0);
+  State<Vector> state = scene.rest_state();
+  state.x *= 0.5;
+  const State<Vector> before = state;
+  for (const SolverKind kind : {SolverKind::conjugate_gradients, SolverKind::cholesky}) {
+    scene.solver().kind = kind;
+    const auto stepper = make_stepper("implicit-euler");
+    BOOST_TEST((stepper->step(scene, 0.1, state) == StepStatus::not_positive_definite));
+    BOOST_TEST((state.x == before.x && state.v == before.v));
+    State<Vector> shorter = before;
+    BOOST_TEST((stepper->step(scene, 1e-5, shorter) == StepStatus::done));
+  }
+}
+
 BOOST_AUTO_TEST_CASE(nothing_is_allocated_after_the_first_step) {
   for (const double own_damping : {0.0, 1e-4})
     for (const MethodInfo& method : all_methods())
-      BOOST_TEST_CONTEXT(method.name << ", own damping " << own_damping) {
-        Scene scene = cloth(6, {1, 1e-4}, own_damping);
-        State<Vector> state = scene.rest_state();
-        const auto stepper = make_stepper(method.name);
-        long after_first = 0, at_last = 0;
-        const Observer observer = [&](const SimulationResult& so_far, const State<Vector>&) {
-          (so_far.steps <= 1 ? after_first : at_last) = allocations();
-          return true;
-        };
-        const long before = allocations();
-        simulate(scene, *stepper, {1e-4, 20}, asleep, state, observer);
-        BOOST_TEST(at_last == after_first);
-        BOOST_TEST(after_first > before, "the counter does not count");
-      }
+      for (const SolverKind solver : {SolverKind::conjugate_gradients, SolverKind::cholesky})
+        BOOST_TEST_CONTEXT(method.name << ", own damping " << own_damping) {
+          if (solver == SolverKind::cholesky && !method.implicit) continue;
+          Scene scene = cloth(6, {1, 1e-4}, own_damping);
+          scene.solver().kind = solver;
+          State<Vector> state = scene.rest_state();
+          const auto stepper = make_stepper(method.name);
+          long after_first = 0, at_last = 0;
+          const Observer observer = [&](const SimulationResult& so_far, const State<Vector>&) {
+            (so_far.steps <= 1 ? after_first : at_last) = allocations();
+            return true;
+          };
+          const long before = allocations();
+          simulate(scene, *stepper, {1e-4, 20}, asleep, state, observer);
+          BOOST_TEST(at_last == after_first);
+          BOOST_TEST(after_first > before, "the counter does not count");
+        }
 }
 
 // Theory of the two methods on a cloth with frozen K: explicit Euler's damping hK turns drift-kick.

@@ -71,8 +71,17 @@ bool BlockLinearSystem::invert_diagonal_blocks(double mass_factor, double stiffn
 SolveReport BlockLinearSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
   rhs_.resize(size());
   for (long i = 0; i < stiffness_.rows(); ++i) rhs_.segment<3>(3 * i) = mass_[i] * rhs.segment<3>(3 * i);
+  if (solver.kind == SolverKind::cholesky) return solve_by_cholesky(h, out);
   return solver.preconditioner == Preconditioner::block_ssor ? solve_by_block_ssor(h, out)
                                                              : solve_by_block_jacobi(h, out);
+}
+
+SolveReport BlockLinearSystem::solve_by_cholesky(double h, Vector& out) {
+  if (!cholesky_.factorize(1 + h * damping_.d0, mass_, h * (damping_.alpha + h), stiffness_, h,
+                           own_damping()))
+    return {.status = StepStatus::not_positive_definite};
+  cholesky_.solve(rhs_, out);
+  return {.status = out.allFinite() ? StepStatus::done : StepStatus::diverged};
 }
 
 SolveReport BlockLinearSystem::solve_by_block_ssor(double h, Vector& out) {

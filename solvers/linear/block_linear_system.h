@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "solvers/linear/block_cholesky.h"
 #include "solvers/linear/block_sparse_matrix.h"
 #include "solvers/linear/block_ssor.h"
 #include "solvers/linear/conjugate_gradient.h"
@@ -19,7 +20,8 @@ struct RayleighDamping {
 };
 
 /// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone
-/// an acceleration is one block product, K (x + alpha v). Solves by preconditioned conjugate gradients.
+/// an acceleration is one block product, K (x + alpha v). Solves by preconditioned conjugate gradients or by
+/// a Cholesky factorization, made anew at each solve.
 class BlockLinearSystem final : public LinearSystem {
  public:
   /// mass: one per particle [kg]. K and C [N/m, N·s/m] start at zero and are filled through stiffness() and
@@ -35,7 +37,7 @@ class BlockLinearSystem final : public LinearSystem {
   const std::vector<double>& inverse_mass() const { return inverse_mass_; }
   const RayleighDamping& damping() const { return damping_; }
   void set_damping(const RayleighDamping& damping) { damping_ = damping; }
-  ConjugateGradientOptions solver;
+  SolverOptions solver;
 
   Eigen::Index size() const override { return 3 * static_cast<Eigen::Index>(mass_.size()); }
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
@@ -46,6 +48,7 @@ class BlockLinearSystem final : public LinearSystem {
   double potential_energy(const Vector& x) override;
 
  private:
+  SolveReport solve_by_cholesky(double h, Vector& out);
   SolveReport solve_by_block_jacobi(double h, Vector& out);
   SolveReport solve_by_block_ssor(double h, Vector& out);
   bool invert_diagonal_blocks(double mass_factor, double stiffness_factor, double damping_factor);
@@ -57,6 +60,7 @@ class BlockLinearSystem final : public LinearSystem {
   ConjugateGradient conjugate_gradient_;
   std::vector<double> inverse_blocks_;  // of the diagonal of H, 9 per particle, for block Jacobi
   BlockSsor ssor_;
+  BlockCholesky cholesky_;
   Vector w_, product_, rhs_, transformed_rhs_, transformed_out_;
 };
 

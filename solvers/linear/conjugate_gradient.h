@@ -5,20 +5,10 @@
 
 #include <cmath>
 
+#include "solvers/linear/solver_options.h"
 #include "solvers/system.h"
 
 namespace springstab {
-
-enum class Preconditioner {
-  block_jacobi,  // the inverse diagonal blocks, as in the paper
-  block_ssor,    // see block_ssor.h: less than half the iterations, each no dearer
-};
-
-struct ConjugateGradientOptions {
-  double tolerance = 1e-6;  // on ‖b - Hy‖ in the norm of P⁻¹, relative to that of b
-  long max_iterations = 10000;
-  Preconditioner preconditioner = Preconditioner::block_ssor;
-};
 
 class ConjugateGradient {
  public:
@@ -27,13 +17,13 @@ class ConjugateGradient {
   /// away.
   template <class Apply, class Precondition>
   SolveReport solve(const Apply& apply, const Precondition& precondition, const Vector& b, Vector& y,
-                    const ConjugateGradientOptions& options) {
+                    const SolverOptions& options) {
     return iterate(apply, precondition, z_, b, y, options);
   }
 
   /// Without a preconditioner: P = 1.
   template <class Apply>
-  SolveReport solve(const Apply& apply, const Vector& b, Vector& y, const ConjugateGradientOptions& options) {
+  SolveReport solve(const Apply& apply, const Vector& b, Vector& y, const SolverOptions& options) {
     return iterate(
         apply, [](const Vector& r, const Vector&) { return r.squaredNorm(); }, r_, b, y, options);
   }
@@ -42,7 +32,7 @@ class ConjugateGradient {
   // z is P⁻¹ r after precondition(r, z); without a preconditioner it is r itself.
   template <class Apply, class Precondition>
   SolveReport iterate(const Apply& apply, const Precondition& precondition, Vector& z, const Vector& b,
-                      Vector& y, const ConjugateGradientOptions& options) {
+                      Vector& y, const SolverOptions& options) {
     SolveReport report;
     y.setZero(b.size());
     r_ = b;

@@ -60,8 +60,8 @@ class Scene final : public System {
   /// Where all particles are, for terms().
   ParticleField position_field(const Vector& x) const;
 
-  /// Of the conjugate gradients in implicit methods, from the next linearization on.
-  ConjugateGradientOptions& solver() { return solver_; }
+  /// How implicit methods solve their linear systems, from the next linearization on.
+  SolverOptions& solver() { return solver_; }
 
   Eigen::Index size() const override { return 3 * static_cast<Eigen::Index>(free_count_); }
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
@@ -83,7 +83,7 @@ class Scene final : public System {
   Eigen::Vector3d gravity_;
   RayleighDamping damping_;
   Hessian hessian_ = Hessian::exact;
-  ConjugateGradientOptions solver_;
+  SolverOptions solver_;
   std::vector<double> mass_, inverse_mass_;  // of the free particles [kg, 1/kg]
   SceneTerms terms_;
   std::unique_ptr<BlockLinearSystem> linear_;  // none until a linearization is asked for

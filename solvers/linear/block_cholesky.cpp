@@ -1,0 +1,164 @@
+#include "solvers/linear/block_cholesky.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/OrderingMethods>
+#include <algorithm>
+
+namespace springstab {
+namespace {
+
+using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+using BlockAt = Eigen::Map<Block>;
+using ConstBlockAt = Eigen::Map<const Block>;
+using WideBlock = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;  // the last column zero
+using Four = Eigen::Array4d;
+using FourAt = Eigen::Map<Four>;
+
+// Every block (i, j) of the two matrices together, some twice.
+template <class Visit>
+void for_each_block(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping,
+                    const Visit& visit) {
+  for (const BlockSparseMatrix* a : {&stiffness, damping})
+    for (int i = 0; a && i < a->rows(); ++i)
+      for (long p = a->row_begin(i); p < a->row_begin(i + 1); ++p) visit(i, a->column(p));
+}
+
+std::vector<int> minimum_degree_order(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for_each_block(stiffness, damping, [&](int i, int j) { entries.emplace_back(i, j, 1.0); });
+  Eigen::SparseMatrix<double> graph(stiffness.rows(), stiffness.rows());
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
+  Eigen::AMDOrdering<int>()(graph, order);
+  return {order.indices().begin(), order.indices().end()};
+}
+
+}  // namespace
+
+void BlockCholesky::set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping) {
+  order_ = minimum_degree_order(stiffness, damping);
+  const int n = rows();
+  place_.resize(n);
+  for (int k = 0; k < n; ++k) place_[order_[k]] = k;
+
+  std::vector<std::pair<int, int>> above;  // column, row
+  for_each_block(stiffness, damping, [&](int i, int j) {
+    if (place_[i] < place_[j]) above.emplace_back(place_[j], place_[i]);
+  });
+  std::sort(above.begin(), above.end());
+  above.erase(std::unique(above.begin(), above.end()), above.end());
+  above_start_.assign(n + 1, 0);
+  for (const auto& [column, row] : above) {
+    ++above_start_[column + 1];
+    above_.push_back(row);
+  }
+  for (int k = 0; k < n; ++k) above_start_[k + 1] += above_start_[k];
+
+  visited_.assign(n, -1);
+  path_.resize(n);
+  reach_.resize(n);
+  parent_.assign(n, -1);
+  start_.assign(n + 1, 0);
+  for (int k = 0; k < n; ++k) {
+    visited_[k] = k;
+    for (long p = above_start_[k]; p < above_start_[k + 1]; ++p)
+      for (int i = above_[p]; visited_[i] != k; i = parent_[i]) {
+        if (parent_[i] < 0) parent_[i] = k;
+        visited_[i] = k;
+        ++start_[i + 1];
+      }
+  }
+  for (int k = 0; k < n; ++k) start_[k + 1] += start_[k];
+  end_.resize(n);
+  row_.resize(start_[n]);
+  value_.resize(9 * start_[n]);
+  inverse_pivot_.resize(9 * static_cast<std::size_t>(n));
+  column_.assign(12 * static_cast<std::size_t>(n), 0);
+}
+
+// Visits the columns i < k in which row k of L has a block, each after those below it in the tree.
+template <class Visit>
+void BlockCholesky::for_each_in_row_of_l(int k, const Visit& visit) {
+  int first = rows();
+  visited_[k] = k;
+  for (long p = above_start_[k]; p < above_start_[k + 1]; ++p) {
+    int length = 0;
+    for (int i = above_[p]; visited_[i] != k; i = parent_[i]) {
+      visited_[i] = k;
+      path_[length++] = i;
+    }
+    while (length > 0) reach_[--first] = path_[--length];
+  }
+  for (; first < rows(); ++first) visit(reach_[first]);
+}
+
+// Adds the blocks of H's column k down to the diagonal, which by symmetry are those of its row.
+void BlockCholesky::scatter(int k, double factor, const BlockSparseMatrix& matrix) {
+  const int row = order_[k];
+  for (long p = matrix.row_begin(row); p < matrix.row_begin(row + 1); ++p)
+    if (const int i = place_[matrix.column(p)]; i <= k)
+      Eigen::Map<WideBlock>(&column_[12 * static_cast<long>(i)]).leftCols<3>() +=
+          factor * ConstBlockAt(matrix.block(p)).transpose();
+}
+
+bool BlockCholesky::factorize(double m, const std::vector<double>& mass, double k_factor,
+                              const BlockSparseMatrix& stiffness, double c,
+                              const BlockSparseMatrix* damping) {
+  if (order_.empty()) set_pattern(stiffness, damping);
+  std::fill(visited_.begin(), visited_.end(), -1);
+  std::fill(column_.begin(), column_.end(), 0.0);
+  std::copy(start_.begin(), start_.end() - 1, end_.begin());
+  for (int k = 0; k < rows(); ++k) {
+    scatter(k, k_factor, stiffness);
+    if (damping) scatter(k, c, *damping);
+    Eigen::Map<WideBlock> diagonal(&column_[12 * static_cast<long>(k)]);
+    Block pivot = diagonal.leftCols<3>();
+    pivot.diagonal().array() += m * mass[order_[k]];
+    diagonal.setZero();
+
+    // L_ki = (L_ii⁻¹ h_i)ᵀ, and h_j -= L_ji L_kiᵀ for what column i has above row k.
+    for_each_in_row_of_l(k, [&](int i) {
+      Eigen::Map<WideBlock> h(&column_[12 * static_cast<long>(i)]);
+      const WideBlock z =
+          ConstBlockAt(&inverse_pivot_[9 * static_cast<long>(i)]).triangularView<Eigen::Lower>() * h;
+      h.setZero();
+      const Four z0 = z.row(0).array(), z1 = z.row(1).array(), z2 = z.row(2).array();
+      const double* l = &value_[9 * start_[i]];
+      for (long p = start_[i]; p < end_[i]; ++p, l += 9) {
+        double* const to = &column_[12 * static_cast<long>(row_[p])];
+        for (int r = 0; r < 3; ++r)
+          FourAt{to + 4 * r} -= l[3 * r] * z0 + l[3 * r + 1] * z1 + l[3 * r + 2] * z2;
+      }
+      const Block l_ki = z.leftCols<3>().transpose();
+      pivot.noalias() -= l_ki * l_ki.transpose();
+      BlockAt{&value_[9 * end_[i]]} = l_ki;
+      row_[end_[i]++] = k;
+    });
+
+    const Eigen::LLT<Block> cholesky(pivot);
+    if (cholesky.info() != Eigen::Success) return false;
+    BlockAt{&inverse_pivot_[9 * static_cast<long>(k)]} = cholesky.matrixL().solve(Block::Identity());
+  }
+  return true;
+}
+
+void BlockCholesky::solve(const Vector& b, Vector& y) {
+  y.resize(b.size());
+  solution_.resize(b.size());
+  Vector& u = solution_;
+  for (long k = 0; k < rows(); ++k) u.segment<3>(3 * k) = b.segment<3>(3 * order_[k]);
+  for (long i = 0; i < rows(); ++i) {
+    const Eigen::Vector3d ui = ConstBlockAt(&inverse_pivot_[9 * i]) * u.segment<3>(3 * i);
+    u.segment<3>(3 * i) = ui;
+    for (long p = start_[i]; p < end_[i]; ++p) u.segment<3>(3 * row_[p]) -= ConstBlockAt(&value_[9 * p]) * ui;
+  }
+  for (long i = rows() - 1; i >= 0; --i) {
+    Eigen::Vector3d ui = u.segment<3>(3 * i);
+    for (long p = start_[i]; p < end_[i]; ++p)
+      ui -= ConstBlockAt(&value_[9 * p]).transpose() * u.segment<3>(3 * row_[p]);
+    u.segment<3>(3 * i) = ConstBlockAt(&inverse_pivot_[9 * i]).transpose() * ui;
+    y.segment<3>(3 * order_[i]) = u.segment<3>(3 * i);
+  }
+}
+
+}  // namespace springstab

@@ -477,6 +477,14 @@ BOOST_AUTO_TEST_CASE(a_product_with_the_stiffness_needs_no_matrix) {
           // `before` of at most 1 leaves its rounding in the difference
           BOOST_TEST((out - before - expected).norm() <= 1e-13 * expected.norm() + 10 * eps * before.norm());
           BOOST_TEST(expected.norm() > 0.1);
+
+          // and the force with damping is the force and such a product
+          Vector damped = Vector::Zero(u.size()), apart = damped;
+          term.add_damped_force(model.field(x), u.data(), 0.3, damped.data());
+          term.add_force(model.field(x), apart.data());
+          const double size = apart.norm() + expected.norm();
+          term.add_stiffness_times(model.field(x), u.data(), -0.3, apart.data());
+          BOOST_TEST((damped - apart).norm() <= 1e-13 * size);
         });
       },
       some_pins);

@@ -76,6 +76,12 @@ void hessian_product(benchmark::State& state, Part part) {
   });
 }
 
+void damped_force(benchmark::State& state, Part part) {
+  run(state, part, [](const auto& term, const ParticleField& x, Cloth& c, BlockSparseMatrix&) {
+    term.add_damped_force(x, c.x.data(), 1e-9, c.out.data());
+  });
+}
+
 void assembly(benchmark::State& state, Part part) {
   run(state, part, [](const auto& term, const ParticleField& x, Cloth&, BlockSparseMatrix& matrix) {
     term.add_stiffness(x, matrix);
@@ -105,6 +111,7 @@ const bool registered = [] {
     void (*run)(benchmark::State&, Part);
   } works[] = {{"force", force},
                {"hessian_product", hessian_product},
+               {"damped_force", damped_force},
                {"assembly", assembly},
                {"projected_assembly", projected_assembly}};
   const auto sizes = [](benchmark::internal::Benchmark* b) {

@@ -3,16 +3,12 @@
 // time per particle; what is bound by memory also GB/s and the fraction of the bandwidth that a plain sum
 // over a large array reads at, measured just before; the others their time in block products, measured just
 // before as well.
-#include <benchmark/benchmark.h>
-
-#include <algorithm>
 #include <cmath>
-#include <ctime>
-#include <limits>
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "experiments/bench/measure.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/stepper.h"
@@ -20,6 +16,7 @@
 namespace {
 
 using namespace springstab;
+using namespace springstab::bench;
 
 constexpr double h_implicit = 0.01;  // [s]
 
@@ -59,53 +56,16 @@ Net& net(int n) {
   return kept.at(n);
 }
 
-/// CPU time of this thread [s].
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// The least of several runs [s]: on a shared machine the others measure the neighbours.
-template <class Work>
-double least_seconds(int runs, const Work& work) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < runs; ++k) {
-    const double start = cpu_seconds();
-    work();
-    least = std::min(least, cpu_seconds() - start);
-  }
-  return least;
-}
-
-/// A plain sum over 256 MB [B/s].
-double read_bandwidth() {
-  static const Vector array = Vector::Ones(32 << 20);
-  const double seconds = least_seconds(5, [] {
-    double sum = array.sum();
-    benchmark::DoNotOptimize(sum);
-  });
-  return static_cast<double>(array.size()) * sizeof(double) / seconds;
-}
-
-double product_seconds(const BlockSparseMatrix& matrix, const Vector& x) {
-  Vector out(x.size());
-  return least_seconds(20, [&] {
-    matrix.multiply(x.data(), out.data());
-    benchmark::DoNotOptimize(out.data());
-  });
-}
-
 /// Runs work, of which `bytes` are the memory moved or, if 0, `unit` the seconds of a block product.
 template <class Work>
 void run(benchmark::State& state, const Net& subject, double bytes, double unit, const Work& work) {
   const double bandwidth = bytes > 0 ? read_bandwidth() : 0;
   double least = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
-    const double start = cpu_seconds();
+    const double start = thread_seconds();
     work();
     benchmark::ClobberMemory();
-    least = std::min(least, cpu_seconds() - start);
+    least = std::min(least, thread_seconds() - start);
   }
   state.counters["best_us"] = 1e6 * least;
   state.counters["ns/particle"] = 1e9 * least / subject.particles;
@@ -115,10 +75,6 @@ void run(benchmark::State& state, const Net& subject, double bytes, double unit,
   } else {
     state.counters["products"] = least / unit;
   }
-}
-
-double product_bytes(const BlockSparseMatrix& matrix) {
-  return 76.0 * static_cast<double>(matrix.blocks()) + 56.0 * matrix.rows();
 }
 
 void read(benchmark::State& state) {

@@ -51,9 +51,11 @@ void Bending::add_force(const ParticleField& x, double* force) const {
   }
 }
 
-void Bending::add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const {
+// out += scale · K u, and minus the energy's gradient where the force is wanted too.
+template <bool with_force>
+void Bending::add_products(const ParticleField& x, const double* u, double scale, double* out) const {
   const Elements<4>& elements = hinges_->elements();
-  const double stiffness = scale * stiffness_;
+  const double force = -stiffness_, stiffness = scale * stiffness_;
   CornerVectors<4> at, direction, product;
   for (int b = 0; b < elements.batches(); ++b) {
     const auto& rest = hinges_->rest_angles(b);
@@ -63,7 +65,8 @@ void Bending::add_stiffness_times(const ParticleField& x, const double* u, doubl
       const HingeShape h = hinge_shape(at, i);
       const HingeGradient g = gradient(h);
       const Vec3 u0 = direction.get(0, i), u1 = direction.get(1, i), de = u1 - u0;
-      const double along = stiffness * dot(g, direction, i), turned = stiffness * rest.turned(h, i);
+      const double angle = rest.turned(h, i), turned = stiffness * angle;
+      const double along = stiffness * dot(g, direction, i) + (with_force ? force * angle : 0);
       Vec3 f0 = along * g.x0, f1 = along * g.x1;
       // k Δ ∇∇θ: with f_r and f_e the coefficients of r' and δe'
       const auto side = [&](const HingeSide& t, const Vec3& apex) {
@@ -82,6 +85,14 @@ void Bending::add_stiffness_times(const ParticleField& x, const double* u, doubl
     }
     elements.scatter(product, b, out);
   }
+}
+
+void Bending::add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const {
+  add_products<false>(x, u, scale, out);
+}
+
+void Bending::add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const {
+  add_products<true>(x, v, -alpha, force);
 }
 
 Couplings Bending::couplings() const { return hinges_->elements().couplings(); }

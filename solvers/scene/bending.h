@@ -22,6 +22,7 @@ class Bending final : public ElasticTerm {
   double energy(const ParticleField& x) const override;
   void add_force(const ParticleField& x, double* force) const override;
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
+  void add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const override;
   Couplings couplings() const override;
   void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
 
@@ -34,6 +35,9 @@ class Bending final : public ElasticTerm {
   void bind(const BlockSparseMatrix& stiffness) override { places_.bind(hinges_->elements(), stiffness); }
 
  private:
+  template <bool with_force>
+  void add_products(const ParticleField& x, const double* u, double scale, double* out) const;
+
   std::shared_ptr<const HingeAngles> hinges_;
   double stiffness_;  // [N·m]
   BlockPlaces<4> places_;

@@ -43,10 +43,11 @@ void StretchShear::add_force(const ParticleField& x, double* force) const {
   }
 }
 
-void StretchShear::add_stiffness_times(const ParticleField& x, const double* u, double scale,
-                                       double* out) const {
+// out += scale · K u, and minus the energy's gradient where the force is wanted too.
+template <bool with_force>
+void StretchShear::add_products(const ParticleField& x, const double* u, double scale, double* out) const {
   const Elements<3>& elements = triangles_->elements();
-  const PerTriangleCondition stiffness = stiffness_.scaled(scale);
+  const PerTriangleCondition stiffness = stiffness_;
   const RestStretch rest = rest_;
   CornerVectors<3> at, direction, product;
   for (int b = 0; b < elements.batches(); ++b) {
@@ -55,17 +56,33 @@ void StretchShear::add_stiffness_times(const ParticleField& x, const double* u, 
     elements.gather_free(u, b, direction);
     for (int i = 0; i < batch_size; ++i) {
       const Deformation d = shapes.deformation(at, i);
-      const PerTriangleCondition k = stiffness.scaled(shapes.weight[i]);
+      const PerTriangleCondition k = stiffness.scaled(scale * shapes.weight[i]);
       const double t_u = k.stretch_u * (1 - rest.u / d.l_u), t_v = k.stretch_v * (1 - rest.v / d.l_v);
       const double swap = k.shear * d.shear;
       const Vec3 u_u = shapes.along_u(direction, i), u_v = shapes.along_v(direction, i);
-      const double s_u = (k.stretch_u - t_u) * dot(d.n_u, u_u), s_v = (k.stretch_v - t_v) * dot(d.n_v, u_v);
-      const double s_s = k.shear * (dot(d.w_v, u_u) + dot(d.w_u, u_v));
+      double s_u = (k.stretch_u - t_u) * dot(d.n_u, u_u), s_v = (k.stretch_v - t_v) * dot(d.n_v, u_v);
+      double s_s = k.shear * (dot(d.w_v, u_u) + dot(d.w_u, u_v));
+      if constexpr (with_force) {
+        const PerTriangleCondition f = stiffness.scaled(-shapes.weight[i]);
+        s_u += f.stretch_u * (d.l_u - rest.u);
+        s_v += f.stretch_v * (d.l_v - rest.v);
+        s_s += f.shear * d.shear;
+      }
       shapes.pull_back(s_u * d.n_u + s_s * d.w_v + t_u * u_u + swap * u_v,
                        s_v * d.n_v + s_s * d.w_u + t_v * u_v + swap * u_u, i, product);
     }
     elements.scatter(product, b, out);
   }
+}
+
+void StretchShear::add_stiffness_times(const ParticleField& x, const double* u, double scale,
+                                       double* out) const {
+  add_products<false>(x, u, scale, out);
+}
+
+void StretchShear::add_damped_force(const ParticleField& x, const double* v, double alpha,
+                                    double* force) const {
+  add_products<true>(x, v, -alpha, force);
 }
 
 Couplings StretchShear::couplings() const { return triangles_->elements().couplings(); }

@@ -29,6 +29,7 @@ class StretchShear final : public ElasticTerm {
   double energy(const ParticleField& x) const override;
   void add_force(const ParticleField& x, double* force) const override;
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
+  void add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const override;
   Couplings couplings() const override;
   void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
 
@@ -44,6 +45,9 @@ class StretchShear final : public ElasticTerm {
   void bind(const BlockSparseMatrix& stiffness) override { places_.bind(triangles_->elements(), stiffness); }
 
  private:
+  template <bool with_force>
+  void add_products(const ParticleField& x, const double* u, double scale, double* out) const;
+
   enum class Curvature { exact, positive };
   template <Curvature curvature>
   void add_blocks(const ParticleField& x, BlockSparseMatrix& stiffness) const;

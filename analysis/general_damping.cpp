@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace springstab {
 namespace {
@@ -22,7 +23,8 @@ double root(double a, double b, double c, const ModePoint& p) {
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
                                   const Stiffening& stiffening) {
   const auto& [a, b, c] = condition;
-  constexpr double loose = 1e-4;
+  constexpr double loose = 1e-4, sharp = 0;
+  const double last = stiffening.factor == 1 ? sharp : 1e-6;  // far below what the safety factor covers
   double h = infinity;
   Eigen::VectorXd near;
   for (const auto& [x, y] : {std::pair{0.0, 1.0}, {1.0, 0.0}}) {
@@ -40,8 +42,8 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
     const double next = std::min(h, root(a, b, c, stiffening(*p)));
     const double change = 1 - next / h;
     h = next;
-    if (tolerance == 0 && change < 1e-6) break;  // the next change is about its square
-    if (change < 1e-3) tolerance = 0;
+    if (tolerance == last && change < 1e-6) break;  // the next change is about its square
+    if (change < 1e-3) tolerance = last;
   }
   return h;
 }
@@ -64,7 +66,8 @@ std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& co
 }
 
 std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane& condition,
-                                   const ArpackOptions& options) {
+                                   ArpackOptions options) {
+  options.tolerance = std::max(options.tolerance, 1e-6);  // only guides the proof
   const std::optional<double> h = exact_limit(NumericalRange(s, options), condition);
   if (!h) return std::nullopt;
   DefinitenessProof proof(s);
@@ -74,33 +77,56 @@ std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane&
 GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0,
                                const DampingModel& damping, double safety, bool proofs,
                                const ArpackOptions& options)
-    : k0_(k0), damping_(damping), safety_(safety), range_(s, options) {
-  if (proofs) proof_.emplace(s);
-}
-
-GeneralDamping::~GeneralDamping() = default;
+    : k0_(k0), damping_(damping), safety_(safety), proofs_(proofs), certified_(s, options) {}
 
 MethodLimits GeneralDamping::limits(std::string_view method) {
+  const StabilityRegion& region = stability_region(method);
+  for (const auto& [other, limits] : known_)
+    if (region.same_conditions(*other)) return limits;
+  known_.emplace_back(&region, compute(method));
+  return known_.back().second;
+}
+
+MethodLimits GeneralDamping::compute(std::string_view method) {
   MethodLimits limits = method_limits(method, k0_, damping_, safety_);
   if (limits.status != LimitStatus::unknown || !k0_.converged || k0_.indefinite || !damping_.semidefinite)
     return limits;
   if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition())
     add_exact(*condition, limits);
+  else
+    add_certified(method, limits);
   return limits;
 }
 
+std::vector<Stiffening> GeneralDamping::stiffenings() const {
+  std::vector<Stiffening> all{{}, {safety_, 0}};
+  if (damping_.alpha > 0) all.push_back({safety_, (safety_ - 1) * damping_.alpha});
+  return all;
+}
+
 void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits) {
-  const std::optional<double> h = exact_limit(range_, condition);
-  const std::optional<double> damping_fixed = exact_limit(range_, condition, {safety_, 0});
-  const std::optional<double> alpha_fixed =
-      damping_.alpha > 0 ? exact_limit(range_, condition, {safety_, (safety_ - 1) * damping_.alpha})
-                         : damping_fixed;
-  if (!h || !damping_fixed || !alpha_fixed) return;
-  limits.h_max = *h;
-  limits.status = std::isinf(*h) ? LimitStatus::unlimited : LimitStatus::limited;
-  if (proof_) limits.h_certified = proved_limit(*proof_, condition, *h);
-  if (limits.status == LimitStatus::limited)
-    limits.recommended = std::min({*h, *damping_fixed, *alpha_fixed});
+  double least = infinity;
+  for (const Stiffening& stiffening : stiffenings()) {
+    const std::optional<double> h = exact_limit(certified_.range(), condition, stiffening);
+    if (!h) return;
+    if (!limits.h_max) limits.h_max = *h;
+    least = std::min(least, *h);
+  }
+  limits.status = std::isinf(*limits.h_max) ? LimitStatus::unlimited : LimitStatus::limited;
+  if (proofs_) limits.h_certified = proved_limit(certified_.proof(), condition, *limits.h_max);
+  if (std::isfinite(least)) limits.recommended = least;
+}
+
+void GeneralDamping::add_certified(std::string_view method, MethodLimits& limits) {
+  if (proofs_) limits.h_certified = certified_.certified(method);
+  double least = limits.h_certified.value_or(infinity);
+  const std::vector<Stiffening> all = stiffenings();
+  for (const Stiffening& stiffening : std::span(all).subspan(limits.h_certified ? 1 : 0)) {
+    const std::optional<double> h = certified_.estimated(method, stiffening);
+    if (!h) return;
+    least = std::min(least, *h);
+  }
+  if (std::isfinite(least)) limits.recommended = least;
 }
 
 }  // namespace springstab

@@ -2,22 +2,13 @@
 // a method's condition is one for matrices (StabilityRegion::exact_condition).
 #pragma once
 
-#include <memory>
 #include <optional>
 
-#include "analysis/definiteness.h"
+#include "analysis/certified_step.h"
 #include "analysis/method_limits.h"
 #include "analysis/numerical_range.h"
 
 namespace springstab {
-
-/// K -> F K and D -> D + β K: with a safety factor F the damping stays, β = 0, or α does, β = (F - 1) α.
-struct Stiffening {
-  double factor = 1;         // F
-  double added_damping = 0;  // β [s]
-
-  ModePoint operator()(const ModePoint& p) const { return {p.d + added_damping * p.k, factor * p.k}; }
-};
 
 /// The h at which λ_max(x hD' + y h²K') = bound; ∞ where D' = K' = 0; nothing when an eigenvalue did not
 /// converge. x, y >= 0 and bound > 0; D', K' are those of `range`, stiffened.
@@ -30,7 +21,7 @@ std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& co
 /// Below what it returns a method with that exact condition is stable for these matrices, K and D positive
 /// semidefinite: proved. Nothing where no proof was found.
 std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane& condition,
-                                   const ArpackOptions& options = {});
+                                   ArpackOptions options = {});
 
 /// All that `limits` says of one structure with damping of kind `general`.
 class GeneralDamping {
@@ -39,19 +30,22 @@ class GeneralDamping {
   /// quicker.
   GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
                  double safety, bool proofs, const ArpackOptions& options = {});
-  ~GeneralDamping();
 
   /// Unknown where K or D is indefinite.
   MethodLimits limits(std::string_view method);
 
  private:
+  MethodLimits compute(std::string_view method);
+  std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
+  void add_certified(std::string_view method, MethodLimits& limits);
 
   const StiffestMode& k0_;
   DampingModel damping_;
   double safety_;
-  NumericalRange range_;
-  std::optional<DefinitenessProof> proof_;
+  bool proofs_;
+  CertifiedSteps certified_;
+  std::vector<std::pair<const StabilityRegion*, MethodLimits>> known_;
 };
 
 }  // namespace springstab

@@ -42,7 +42,10 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
                              out = b * out + a * part;
                            }};
   ArpackOptions options = options_;
-  options.tolerance = std::max(tolerance, options.tolerance);
+  if (tolerance > options.tolerance) {
+    options.tolerance = tolerance;
+    options.basis_size = 24;  // fewer vectors to orthogonalize against
+  }
   if (near.size() > 0) {  // with a little of every other vector, lest the largest is orthogonal to it
     const Eigen::VectorXd random = start_vector(size_, {}, options_.seed);
     options.start = near + 1e-2 / random.norm() * random;

@@ -182,6 +182,13 @@ StabilityRegion::Column StabilityRegion::column(double x, double y_min, double y
   return {x, stable_intervals({{{x}}, {{0, 1}}}, y_min, y_max)};
 }
 
+bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
+  return std::equal(jury_.begin(), jury_.end(), other.jury_.begin(),
+                    [](const RationalFunction& f, const RationalFunction& g) {
+                      return f.numerator() == g.numerator() && f.denominator() == g.denominator();
+                    });
+}
+
 std::optional<HalfPlane> StabilityRegion::exact_condition() const {
   // Entries affine in X and Y stand for one matrix each, free of the order of products; a row of constants
   // then eliminates x or v.
@@ -300,8 +307,8 @@ std::pair<double, double> StabilityRegion::highest_point(const Piece& piece) con
   return {x, top(x)};
 }
 
-bool StabilityRegion::closed_segment_is_stable(double x0, double x1, double y1) const {
-  const Curve segment{{{x0, x1 - x0}}, {{0, y1}}};
+bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, double y1) const {
+  const Curve segment{{{x0, x1 - x0}}, {{y0, y1 - y0}}};
   for (const Condition& condition : along(jury_, segment)) {
     const Polynomial& n = condition.numerator;
     const Polynomial& d = condition.denominator;
@@ -317,7 +324,7 @@ bool StabilityRegion::closed_segment_is_stable(double x0, double x1, double y1) 
 
 DampingLine StabilityRegion::damping_line(double x0) const {
   const double apex_slope = (constants_.x_at_y_max - x0) / constants_.y_max;
-  if (apex_slope >= 0 && closed_segment_is_stable(x0, constants_.x_at_y_max, constants_.y_max))
+  if (apex_slope >= 0 && closed_segment_is_stable(x0, 0, constants_.x_at_y_max, constants_.y_max))
     return {apex_slope, constants_.y_max};
 
   const auto reach = [&](double angle) {

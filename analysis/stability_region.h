@@ -92,7 +92,14 @@ class StabilityRegion {
 
   const RegionConstants& constants() const { return constants_; }
 
+  /// Whether the two methods have the same conditions, as a linearized one and the one inside.
+  bool same_conditions(const StabilityRegion& other) const;
+
   DampingLine damping_line(double x0) const;
+
+  /// Whether every point from (x0, y0) to (x1, y1), ends included, is stable or neutral: Jury's conditions
+  /// hold to 1e-11 at all their extremes between.
+  bool closed_segment_is_stable(double x0, double y0, double x1, double y1) const;
 
   /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and 1 + T + Δ >= 0 is a half-plane that is
   /// exact for matrices: a method of one force a step, whose λ² - Tλ + Δ is affine in hD' and h²K'. Then for
@@ -126,7 +133,6 @@ class StabilityRegion {
   RegionConstants find_constants() const;
   bool powers_bounded_at(double x, double y) const;
   std::pair<double, double> highest_point(const Piece& piece) const;
-  bool closed_segment_is_stable(double x0, double x1, double y1) const;
 
   SymbolicAmplification amplification_;
   std::array<RationalFunction, 3> jury_;  // indexed by Bound

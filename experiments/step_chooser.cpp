@@ -49,7 +49,7 @@ std::optional<double> StepChooser::recommended(const StiffestMode& k0, const Sta
                      " is stable with this damping; choose another method (see springstab limits) or "
                      "--damping designed",
            std::nullopt;
-  if (limits.status == LimitStatus::unknown)
+  if (limits.status == LimitStatus::unknown && !limits.recommended)
     return reason_ = "the stable step of " + options_.method + " is not known for this damping; give --step",
            std::nullopt;
   if (!limits.recommended) return options_.max_step.value_or(default_max_step);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <span>
 
+#include "analysis/generator_spectrum.h"
+
 namespace springstab {
 namespace {
 
@@ -77,7 +79,7 @@ std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane&
 GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0,
                                const DampingModel& damping, double safety, bool proofs,
                                const ArpackOptions& options)
-    : k0_(k0), damping_(damping), safety_(safety), proofs_(proofs), certified_(s, options) {}
+    : k0_(k0), damping_(damping), safety_(safety), proofs_(proofs), s_(s), certified_(s, options) {}
 
 MethodLimits GeneralDamping::limits(std::string_view method) {
   const StabilityRegion& region = stability_region(method);
@@ -91,10 +93,12 @@ MethodLimits GeneralDamping::compute(std::string_view method) {
   MethodLimits limits = method_limits(method, k0_, damping_, safety_);
   if (limits.status != LimitStatus::unknown || !k0_.converged || k0_.indefinite || !damping_.semidefinite)
     return limits;
-  if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition())
+  if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
     add_exact(*condition, limits);
-  else
+  } else {
     add_certified(method, limits);
+    add_estimate(method, limits);
+  }
   return limits;
 }
 
@@ -127,6 +131,32 @@ void GeneralDamping::add_certified(std::string_view method, MethodLimits& limits
     least = std::min(least, *h);
   }
   if (std::isfinite(least)) limits.recommended = least;
+}
+
+// The true critical step, from eigenvalues, where there are few enough unknowns; the recommended step then
+// is the smallest of such.
+void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits) {
+  if (spectra_.empty())
+    for (const Stiffening& stiffening : stiffenings()) {
+      StructuralMatrices stiffer = s_;
+      stiffer.stiffness *= stiffening.factor;
+      stiffer.damping += stiffening.added_damping * s_.stiffness;
+      spectra_.push_back(generator_spectrum(stiffer));
+      if (!spectra_.back()) break;
+    }
+  double least = infinity;
+  std::vector<double> steps;
+  for (const auto& spectrum : spectra_) {
+    const std::optional<double> h = spectrum ? critical_step(method, *spectrum) : std::nullopt;
+    if (!h || !std::isfinite(*h) || !(*h > 0)) return;
+    steps.push_back(*h);
+    least = std::min(least, *h);
+  }
+  limits.h_max = steps.front();
+  limits.status = LimitStatus::limited;
+  limits.source = LimitSource::estimate;
+  limits.recommended = least;
+  if (limits.h_certified) limits.h_certified = std::min(*limits.h_certified, *limits.h_max);
 }
 
 }  // namespace springstab

@@ -2,7 +2,9 @@
 // a method's condition is one for matrices (StabilityRegion::exact_condition).
 #pragma once
 
+#include <complex>
 #include <optional>
+#include <vector>
 
 #include "analysis/certified_step.h"
 #include "analysis/method_limits.h"
@@ -39,11 +41,14 @@ class GeneralDamping {
   std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
   void add_certified(std::string_view method, MethodLimits& limits);
+  void add_estimate(std::string_view method, MethodLimits& limits);
 
   const StiffestMode& k0_;
   DampingModel damping_;
   double safety_;
   bool proofs_;
+  const StructuralMatrices& s_;
+  std::vector<std::optional<std::vector<std::complex<double>>>> spectra_;  // of each stiffening, when needed
   CertifiedSteps certified_;
   std::vector<std::pair<const StabilityRegion*, MethodLimits>> known_;
 };

@@ -1,0 +1,25 @@
+// Eigenvalues of the damped system M x'' = -K x - D v itself, and the step that a method can take with them.
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "solvers/linear/structural_matrices.h"
+
+namespace springstab {
+
+/// Up to as many unknowns the generator [[0, 1], [-K', -D']] is solved densely.
+inline constexpr Eigen::Index generator_limit = 400;
+
+/// All of the generator's eigenvalues [1/s], computed densely; nothing above `generator_limit` unknowns and
+/// where that did not converge. Those below 1e-6 of √‖K'‖ are left out: rigid motions, but for rounding.
+std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s);
+
+/// The largest H such that every 0 < h < H keeps all these modes stable or neutral, for a method with a
+/// stability function, whose eigenvalues on them are R(hμ). An estimate: the eigenvalues carry rounding.
+/// Nothing for other methods, and where it hinges on a real part of rounding's size.
+std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes);
+
+}  // namespace springstab

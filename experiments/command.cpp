@@ -177,6 +177,47 @@ void add_complexity(CLI::App& app, const CommonOptions& common, ComplexityOption
   command->callback([&] { chosen = [&] { return run_complexity(common, o); }; });
 }
 
+void add_work_precision(CLI::App& app, const CommonOptions& common, WorkPrecisionOptions& o,
+                        std::string& damping, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("work-precision", "Error against run time of every method");
+  add_input(*command, o.input);
+  command->add_option("--duration", o.duration, "time to simulate")->required()->type_name("[s]");
+  command->add_option("--damping", damping, "own, or designed: alpha fitted to each step; errors against own")
+      ->check(CLI::IsMember({"own", "designed"}))
+      ->capture_default_str();
+  command->add_option("--time-limit", o.time_limit, "of one run; a contestant ends with the first above it")
+      ->type_name("[CPU s]")
+      ->capture_default_str();
+  command->add_option("--repetitions", o.repetitions, "timed runs, after one that is not")
+      ->capture_default_str();
+  command->add_flag("!--no-libraries", o.libraries, "without SUNDIALS, GSL and Boost.odeint");
+  command->add_option("--output", o.output, "folder for the runs as CSV, the figure, and the reference")
+      ->type_name("DIR");
+  command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->footer(
+      "Every method runs with steps from its stability limit down, halved each time, and each library with\n"
+      "tolerances from 0.1 down, until a run takes too long or is within 100 times the reference's own "
+      "error.\n"
+      "Errors are relative and mass-weighted, against a reference in closed form (linear systems) or by "
+      "GSL's\n"
+      "rk8pd at two tolerances. Where a limit is not known the ladder begins at 4/sqrt(k0). Linearized "
+      "methods\n"
+      "linearize every 8 steps; implicit Euler's conjugate gradients have the tolerances 1e-2, 1e-4 and "
+      "1e-8.\n"
+      "Choose a duration on which the motion is not chaotic: the reference then says how precise it is.\n"
+      "Cost: CPU seconds, and passes over all springs or blocks (force evaluations, assemblies, products).\n"
+      "JSON: reference {method, error}, contestants[] {name, library, limit, runs[]}, provenance, files.\n\n"
+      "example: springstab work-precision --grid 16x16 --pin first-row --duration 0.1 --output precision");
+  command->callback([&] {
+    chosen = [&] {
+      o.designed_damping = damping == "designed";
+      return run_work_precision(common, o);
+    };
+  });
+}
+
 void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o,
                  std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
@@ -201,8 +242,10 @@ int run_command(int argc, const char* const* argv) {
   LimitsOptions limits;
   SimulateOptions simulate;
   ComplexityOptions complexity{.plots = SPRINGSTAB_PLOTS_DIR, .output = ""};
+  WorkPrecisionOptions precision;
+  precision.plots = SPRINGSTAB_PLOTS_DIR;
   FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
-  std::string damping = "own", hessian = "exact", solver = "cg";
+  std::string damping = "own", precision_damping = "own", hessian = "exact", solver = "cg";
   std::function<int()> chosen;
 
   CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
@@ -224,6 +267,7 @@ int run_command(int argc, const char* const* argv) {
   add_limits(app, common, limits, chosen);
   add_simulate(app, common, simulate, damping, hessian, solver, chosen);
   add_complexity(app, common, complexity, chosen);
+  add_work_precision(app, common, precision, precision_damping, chosen);
   add_figures(app, common, figures, chosen);
 
   try {

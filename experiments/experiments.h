@@ -80,6 +80,18 @@ struct ComplexityOptions {
 };
 int run_complexity(const CommonOptions& common, const ComplexityOptions& options);
 
+/// `springstab work-precision`: error against run time on a scene or a system of matrices.
+struct WorkPrecisionOptions {
+  InputOptions input;
+  double duration = 0;      // [s]
+  double time_limit = 0.5;  // of one run, CPU seconds
+  int repetitions = 5;
+  bool designed_damping = false;
+  bool libraries = true;
+  std::string plots, output;  // folders; no output: nothing is written
+};
+int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options);
+
 /// `springstab figures`: computes and plots.
 struct FiguresOptions {
   std::vector<std::string> names;  // empty for all

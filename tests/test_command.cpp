@@ -516,13 +516,39 @@ BOOST_AUTO_TEST_CASE(complexity_tells_tables_and_every_run) {
 
 BOOST_AUTO_TEST_CASE(help_has_examples_and_version_is_a_number) {
   BOOST_TEST((*this)("--help").status == 0);
-  for (const char* subcommand : {"methods", "region", "limits", "simulate", "complexity", "figures"}) {
+  for (const char* subcommand :
+       {"methods", "region", "limits", "simulate", "complexity", "work-precision", "figures"}) {
     const Outcome help = (*this)(std::string(subcommand) + " --help");
     BOOST_TEST(help.status == 0);
     BOOST_TEST(help.out.find("example") != std::string::npos);
   }
   int major, minor, patch;
   BOOST_TEST(std::sscanf((*this)("--version").out.c_str(), "%d.%d.%d", &major, &minor, &patch) == 3);
+}
+
+BOOST_AUTO_TEST_CASE(work_precision_reports_errors_costs_and_what_the_reference_is_worth) {
+  const std::string input = "work-precision --grid 4x4 --pin first-row --quiet --json --no-libraries ";
+  const Outcome outcome = (*this)(input + "--duration 0.02 --time-limit 0.005 --repetitions 2");
+  BOOST_REQUIRE(outcome.status == 0);
+  const Json report = outcome.json();
+  const double own = report["reference"]["error"]["trajectory"];
+  BOOST_TEST(own > 0);
+  BOOST_TEST(own < 1e-8);
+  long compared = 0;
+  for (const Json& contestant : report["contestants"])
+    for (const Json& run : contestant["runs"])
+      if (run["compared"]) {
+        ++compared;
+        BOOST_TEST(run["errors"]["trajectory"].get<double>() >= 100 * own);
+        BOOST_TEST(run["cpu_seconds"].size() == 2u);
+        BOOST_TEST(run["equivalents"].get<long>() > 0);
+      }
+  BOOST_TEST(compared > 10);
+  BOOST_TEST((*this)(input + "--duration 0").status == 2);
+  BOOST_TEST((*this)(input + "--duration 1 --repetitions 0").status == 2);
+  const fs::path scene =
+      file("scene.json", R"({"geometry": {"grid": [4, 4]}, "damping": {"alpha": "designed"}})");
+  BOOST_TEST((*this)("work-precision '" + scene.string() + "' --duration 1").status == 2);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -1,0 +1,180 @@
+#include "experiments/precision/reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <stdexcept>
+
+#include "analysis/adaptive_integrator.h"
+#include "analysis/linear_motion.h"
+#include "experiments/output.h"
+#include "experiments/precision/scales.h"
+
+namespace springstab {
+namespace {
+
+constexpr Eigen::Index largest_decomposed = 2000;  // unknowns
+constexpr double loose = 1e-10, tight = 1e-12;
+
+bool has_modes(Problem& problem) {
+  return problem.is_linear() && problem.damping().kind != DampingModel::Kind::general &&
+         problem.system().size() <= largest_decomposed;
+}
+
+Trajectory by_modes(const Problem& problem, std::uint64_t seed) {
+  const LinearMotion motion(problem.structure(), problem.damping().d0, problem.damping().alpha,
+                            problem.start(), seed);
+  Trajectory trajectory{problem.start()};
+  for (double t : sample_times(problem)) trajectory.push_back(motion.at(t));
+  return trajectory;
+}
+
+Trajectory integrated(Problem& problem, double tolerance) {
+  const Scales scales = scales_of(problem);
+  AdaptiveResult result = integrate_adaptively(
+      problem.system(), problem.start(), sample_times(problem),
+      {.tolerance = tolerance, .place_scale = scales.place, .velocity_scale = scales.velocity});
+  if (!result.finished)
+    throw std::runtime_error("the reference could not be integrated to its end; take a shorter duration");
+  result.at.insert(result.at.begin(), problem.start());
+  return std::move(result.at);
+}
+
+Reference compute(Problem& problem) {
+  const bool modes = has_modes(problem);
+  Reference reference;
+  reference.method = modes ? "closed form, mode by mode" : "GSL rk8pd, tolerances 1e-10 and 1e-12";
+  reference.trajectory = modes ? by_modes(problem, 0) : integrated(problem, tight);
+  const Trajectory other = modes ? by_modes(problem, 1) : integrated(problem, loose);
+  reference.error = errors_of(problem.system(), other, reference.trajectory);
+  return reference;
+}
+
+class Fnv1a {
+ public:
+  void add(const void* data, std::size_t bytes) {
+    const auto* p = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) hash_ = (hash_ ^ p[i]) * 0x100000001b3u;
+  }
+  void add(double value) { add(&value, sizeof value); }
+  void add(const Vector& u) { add(u.data(), sizeof(double) * static_cast<std::size_t>(u.size())); }
+  std::string hex() const { return text("%016llx", static_cast<unsigned long long>(hash_)); }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325u;
+};
+
+// Of one kind of machine only, which a cache is anyway.
+constexpr char magic[] = "springstab reference 1\n";
+
+void write(const std::string& path, const Reference& reference) {
+  OutputFile file(path);
+  std::ostream& out = file.stream();
+  const auto put = [&](const void* data, std::size_t bytes) {
+    out.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
+  };
+  put(magic, sizeof magic);
+  put(&reference.error, sizeof reference.error);
+  for (const State<Vector>& s : reference.trajectory)
+    for (const Vector* u : {&s.x, &s.v}) put(u->data(), sizeof(double) * static_cast<std::size_t>(u->size()));
+  file.commit();
+}
+
+bool read(const std::string& path, Eigen::Index size, Reference& reference) {
+  std::ifstream in(path, std::ios::binary);
+  const auto get = [&](void* data, std::size_t bytes) {
+    in.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes));
+    return in.good();
+  };
+  char found[sizeof magic];
+  if (!get(found, sizeof found) || std::memcmp(found, magic, sizeof magic) != 0) return false;
+  if (!get(&reference.error, sizeof reference.error)) return false;
+  reference.trajectory.resize(trajectory_samples + 1);
+  for (State<Vector>& s : reference.trajectory)
+    for (Vector* u : {&s.x, &s.v}) {
+      u->resize(size);
+      if (!get(u->data(), sizeof(double) * static_cast<std::size_t>(size))) return false;
+    }
+  return in.peek() == std::ifstream::traits_type::eof();
+}
+
+}  // namespace
+
+bool Errors::all_finite() const {
+  return std::isfinite(position) && std::isfinite(velocity) && std::isfinite(trajectory) &&
+         std::isfinite(energy);
+}
+
+Errors errors_of(System& system, const Trajectory& run, const Trajectory& reference) {
+  if (run.size() != reference.size() || run.empty())
+    throw std::invalid_argument("trajectories of different lengths cannot be compared");
+  const auto squared = [&](const Vector& u) { return 2 * system.kinetic_energy(u); };
+  double farthest = 0, fastest = 0, all = 0, off = 0;
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const double away = squared(reference[i].x - reference[0].x);
+    farthest = std::max(farthest, away);
+    fastest = std::max(fastest, squared(reference[i].v));
+    all += away;
+    off += squared(run[i].x - reference[i].x);
+  }
+  const State<Vector>&end = run.back(), &true_end = reference.back();
+  const double energy = system.kinetic_energy(end.v) + system.potential_energy(end.x);
+  const double true_energy = system.kinetic_energy(true_end.v) + system.potential_energy(true_end.x);
+  return {std::sqrt(squared(end.x - true_end.x) / farthest), std::sqrt(squared(end.v - true_end.v) / fastest),
+          std::sqrt(off / all), std::abs(energy - true_energy) / (fastest / 2)};
+}
+
+std::vector<double> sample_times(const Problem& problem) {
+  std::vector<double> times;
+  for (int i = 1; i <= trajectory_samples; ++i) times.push_back(problem.duration() * i / trajectory_samples);
+  return times;
+}
+
+Scales scales_of(const Problem& problem) {
+  const State<Vector>& start = problem.start();
+  const double place = start.x.cwiseAbs().maxCoeff();
+  return {place, std::max(start.v.cwiseAbs().maxCoeff(), place / problem.duration())};
+}
+
+std::string fingerprint(Problem& problem) {
+  System& system = problem.system();
+  Fnv1a hash;
+  hash.add(problem.duration());
+  hash.add(static_cast<double>(trajectory_samples));
+  const Scales scales = scales_of(problem);
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  State<Vector> state = problem.start();
+  Vector a;
+  for (double size : {0., 1e-3, 0.1}) {
+    for (double& x : state.x) x += size * scales.place * uniform(engine);
+    for (double& v : state.v) v += size * scales.velocity * uniform(engine);
+    system.acceleration(state.x, state.v, a);
+    hash.add(state.x);
+    hash.add(state.v);
+    hash.add(a);
+    hash.add(system.kinetic_energy(state.v));
+    hash.add(system.potential_energy(state.x));
+  }
+  return hash.hex();
+}
+
+Reference reference_motion(Problem& problem, const std::string& cache) {
+  problem.set_own_damping();
+  if (cache.empty()) return compute(problem);
+  make_folder(cache);
+  const std::string path = cache + "/" + fingerprint(problem);
+  Reference reference;
+  reference.method =
+      has_modes(problem) ? "closed form, mode by mode" : "GSL rk8pd, tolerances 1e-10 and 1e-12";
+  if (read(path, problem.system().size(), reference)) return reference;
+  reference = compute(problem);
+  write(path, reference);
+  return reference;
+}
+
+}  // namespace springstab

@@ -1,0 +1,115 @@
+// `springstab work-precision`: error against run time on the user's own scene.
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "experiments/experiments.h"
+#include "experiments/output.h"
+#include "experiments/precision/contest.h"
+#include "experiments/precision/contest_figure.h"
+#include "experiments/precision/peers.h"
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+namespace {
+
+void check(const WorkPrecisionOptions& options) {
+  const auto positive = [](const char* option, double value) {
+    if (!(value > 0 && std::isfinite(value)))
+      throw InputError(option, 0, text("is %g, expected a positive number of seconds", value));
+  };
+  positive("--duration", options.duration);
+  positive("--time-limit", options.time_limit);
+  if (options.repetitions < 1)
+    throw InputError("--repetitions", 0, text("is %d, expected at least 1", options.repetitions));
+  if (!options.output.empty() && !std::filesystem::is_regular_file(options.plots + "/work_precision.gp"))
+    throw InputError(options.plots, 0,
+                     "has no work_precision.gp, expected the folder of the gnuplot scripts (--plots)");
+}
+
+std::string title_of(const InputOptions& input) {
+  return !input.file.empty()   ? std::filesystem::path(input.file).stem().string()
+         : !input.grid.empty() ? input.grid
+                               : std::filesystem::path(input.stiffness).stem().string();
+}
+
+Json json_of(const Errors& e) {
+  return {{"position", number(e.position)},
+          {"velocity", number(e.velocity)},
+          {"trajectory", number(e.trajectory)},
+          {"energy", number(e.energy)}};
+}
+
+Json json_of(const ContestRun& run, bool library) {
+  Json seconds = Json::array();
+  for (double s : run.seconds) seconds.push_back(number(s));
+  return {{library ? "tolerance" : "step", number(run.setting)},
+          {"outcome", name(run.outcome)},
+          {"compared", run.compared},
+          {"errors", run.errors ? json_of(*run.errors) : Json()},
+          {"median_seconds", number(run.median_seconds())},
+          {"cpu_seconds", seconds},
+          {"steps", run.steps},
+          {"counts",
+           {{"force_evaluations", run.counts.force_evaluations},
+            {"hessian_assemblies", run.counts.hessian_assemblies},
+            {"block_products", run.counts.block_products},
+            {"cg_iterations", run.counts.cg_iterations}}},
+          {"equivalents", run.equivalents()}};
+}
+
+Json json_of(const ContestResult& result, const Json& files) {
+  Json list = Json::array();
+  for (const ContestSeries& s : result.series) {
+    Json runs = Json::array();
+    for (const ContestRun& run : s.runs) runs.push_back(json_of(run, s.contestant.library));
+    list.push_back({{"name", s.contestant.name},
+                    {"library", s.contestant.library},
+                    {"limit", number(s.contestant.limit)},
+                    {"runs", runs}});
+  }
+  return {{"duration", number(result.duration)},
+          {"k0", number(result.k0)},
+          {"set_up_seconds", number(result.set_up_seconds)},
+          {"damping", result.designed ? "designed" : "own"},
+          {"reference", {{"method", result.reference.method}, {"error", json_of(result.reference.error)}}},
+          {"contestants", list},
+          {"provenance", provenance()},
+          {"files", files}};
+}
+
+}  // namespace
+
+int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options) {
+  check(options);
+  Problem problem(title_of(options.input), Subject(options.input), options.duration, common);
+  if (options.designed_damping) problem.design_damping();
+  if (!options.output.empty()) make_folder(options.output);
+  const std::string missing = missing_peers();
+  if (options.libraries && !missing.empty() && !common.quiet)
+    std::cerr << "springstab: left out, for they were not found when this was built: " << missing << '\n';
+  const ContestResult result =
+      run_contest(problem, options.output.empty() ? "" : options.output + "/references",
+                  {options.time_limit, options.repetitions, options.libraries}, common);
+  Json files = Json::array();
+  if (!options.output.empty())
+    for (const std::string& file :
+         write_contests({result}, options.output + "/work_precision", options.plots))
+      files.push_back(file);
+
+  if (common.json) {
+    std::cout << json_of(result, files).dump(2) << '\n';
+    return done;
+  }
+  std::cout << text("%s: %ld unknowns, %g s; k0 = %.10g 1/s² (%.3g CPU-seconds)\n", result.title.c_str(),
+                    static_cast<long>(problem.system().size()), result.duration, result.k0,
+                    result.set_up_seconds)
+            << text("reference: %s; its own relative error %.2g (trajectory), %.2g (end position)\n\n",
+                    result.reference.method.c_str(), result.reference.error.trajectory,
+                    result.reference.error.position)
+            << cheapest_table({result}) << '\n'
+            << provenance() << '\n';
+  return done;
+}
+
+}  // namespace springstab

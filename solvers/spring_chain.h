@@ -1,0 +1,47 @@
+// A chain of masses on a line between two walls: mass i between springs i and i + 1, displaced by x_i [m]
+// from rest. Tridiagonal, so that everything about it is solved directly.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "solvers/linear/block_linear_system.h"
+#include "solvers/linear/structural_matrices.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+/// M x'' = -K x - (d0 M + alpha K) v.
+class SpringChain final : public LinearSystem {
+ public:
+  /// n masses [kg] and n + 1 springs [N/m], the first and the last of them to a wall. Throws
+  /// std::invalid_argument for other numbers of them, masses that are not positive and negative springs.
+  SpringChain(std::vector<double> mass, const std::vector<double>& stiffness, RayleighDamping damping);
+
+  const RayleighDamping& damping() const { return damping_; }
+  void set_damping(const RayleighDamping& damping);
+  /// M and K; the damping is not among them.
+  StructuralMatrices matrices() const;
+
+  Eigen::Index size() const override { return mass_.size(); }
+  void acceleration(const Vector& x, const Vector& v, Vector& out) override;
+  void stiffness_times(const Vector& u, Vector& out) override;
+  void damping_times(const Vector& u, Vector& out) override;
+  /// By an LDLᵀ factorization, which is kept while h stays the same. It passes over the chain twice and is
+  /// reported as one product.
+  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override;
+  double kinetic_energy(const Vector& v) override;
+  double potential_energy(const Vector& x) override;
+
+ private:
+  void stretch(const Vector& u);
+  StepStatus factorize(double h);
+
+  Vector mass_, inverse_mass_, stiffness_;
+  RayleighDamping damping_;
+  Vector tension_, sum_;           // of the springs; x + alpha v
+  Vector pivot_inverse_, factor_;  // of M(1 + h d0) + (h alpha + h²) K
+  double factorized_step_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace springstab

@@ -109,4 +109,20 @@ double recommended_step(const StabilityRegion& region, const RayleighModes& mode
   return std::min({critical_step(region, modes), damping_fixed, critical_step(region, stiffer)});
 }
 
+// recommended_step falls as the factor grows.
+std::optional<double> safety_for_step(const StabilityRegion& region, const RayleighModes& modes, double h,
+                                      double most) {
+  const auto short_enough = [&](double safety) {
+    return recommended_step(region, modes, safety) <= h * (1 + 1e-12);
+  };
+  if (short_enough(1)) return 1;
+  if (!short_enough(most)) return std::nullopt;
+  double too_small = 1, enough = most;
+  while (enough > too_small * (1 + 1e-4)) {
+    const double middle = std::sqrt(too_small * enough);
+    (short_enough(middle) ? enough : too_small) = middle;
+  }
+  return enough;
+}
+
 }  // namespace springstab

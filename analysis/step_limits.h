@@ -1,6 +1,8 @@
 // The largest stable step of a method for a whole spectrum of modes, and the damping that goes with it.
 #pragma once
 
+#include <optional>
+
 #include "analysis/stability_region.h"
 
 namespace springstab {
@@ -35,5 +37,10 @@ double designed_alpha(const StabilityRegion& region, double h, double d0);
 /// and for F·K with alpha fixed. (More stiffness can raise an overdamped limit, so F·K alone is not safe, and
 /// with fixed damping neither is h/√F.)
 double recommended_step(const StabilityRegion& region, const RayleighModes& modes, double safety);
+
+/// The least safety factor in [1, most], to 1e-4, whose recommended step is at most h; nothing where there is
+/// none.
+std::optional<double> safety_for_step(const StabilityRegion& region, const RayleighModes& modes, double h,
+                                      double most);
 
 }  // namespace springstab

@@ -92,6 +92,17 @@ struct WorkPrecisionOptions {
 };
 int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options);
 
+/// `springstab divergence`: theory against simulation.
+struct DivergenceOptions {
+  std::vector<std::string> scenes;  // files, besides the built-in ones
+  std::string pin = "0";            // of meshes
+  int cells = 1000;                 // per side of the X-Y plane
+  long steps = 1024;                // of each cell
+  bool quick = false;
+  std::string output;  // folder, empty for none
+};
+int run_divergence(const CommonOptions& common, const DivergenceOptions& options);
+
 /// `springstab figures`: computes and plots.
 struct FiguresOptions {
   std::vector<std::string> names;  // empty for all

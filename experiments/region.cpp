@@ -102,7 +102,7 @@ void write_pieces(const std::string& path, const StabilityRegion& region, const 
 }
 
 CellComparison compare_cells(std::string_view method, const CellGrid& grid, long steps, int threads,
-                             const std::string& path) {
+                             const std::string& path, CellsWritten written) {
   const CellCentres cells(grid);
   const std::vector<double> radii = spectral_radii(method, grid, threads);
   CellComparison result{.cells = static_cast<long>(radii.size()), .steps = steps};
@@ -113,19 +113,21 @@ CellComparison compare_cells(std::string_view method, const CellGrid& grid, long
     const auto part = [&](auto& v) { return std::span(v).subspan(first, last - first); };
     simulate_cells(method, part(cells.x), part(cells.y), steps, result.threshold, part(fates));
   });
+  const auto disagrees = [&](std::size_t i) {
+    return (fates[i] == CellFate::diverged) != (radii[i] > 1 + neutral_band);
+  };
   for (std::size_t i = 0; i < fates.size(); ++i) {
-    const bool diverged = fates[i] == CellFate::diverged;
-    const bool disagrees = diverged != (radii[i] > 1 + neutral_band);
-    result.diverged += diverged;
-    result.disagreements += disagrees;
-    result.outside_band += disagrees && !(std::abs(radii[i] - 1) < result.band);
+    result.diverged += fates[i] == CellFate::diverged;
+    result.disagreements += disagrees(i);
+    result.outside_band += disagrees(i) && !(std::abs(radii[i] - 1) < result.band);
   }
   if (!path.empty()) {
     OutputFile file(path);
     file.stream() << "x,y,spectral_radius,diverged\n";
     for (std::size_t i = 0; i < fates.size(); ++i)
-      file.stream() << cells.x[i] << ',' << cells.y[i] << ',' << radii[i] << ','
-                    << (fates[i] == CellFate::diverged) << '\n';
+      if (written == CellsWritten::all || disagrees(i))
+        file.stream() << cells.x[i] << ',' << cells.y[i] << ',' << radii[i] << ','
+                      << (fates[i] == CellFate::diverged) << '\n';
     file.commit();
   }
   return result;

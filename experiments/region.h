@@ -40,8 +40,10 @@ struct CellComparison {
   long diverged = 0, disagreements = 0, outside_band = 0;
 };
 
+enum class CellsWritten { all, disagreeing };
+
 /// Simulates one oscillator per cell; with a path writes the columns x, y, spectral_radius, diverged (0/1).
 CellComparison compare_cells(std::string_view method, const CellGrid& grid, long steps, int threads,
-                             const std::string& path);
+                             const std::string& path, CellsWritten written = CellsWritten::all);
 
 }  // namespace springstab

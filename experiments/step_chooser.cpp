@@ -19,6 +19,12 @@ constexpr double hopeless = 1e-6;  // of the first step
 
 }  // namespace
 
+EnergyWatch tightened(EnergyWatch watch) {
+  watch.slack = tight_watch;
+  watch.largest_gain = tight_gain;
+  return watch;
+}
+
 StepChooser::StepChooser(Subject& subject, const CommonOptions& common, const SimulateOptions& options)
     : subject_(subject),
       common_(common),
@@ -88,12 +94,8 @@ std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {
 }
 
 EnergyWatch StepChooser::watch(const State<Vector>& start) {
-  EnergyWatch watch = subject_.energy_watch(start);
-  if (!options_.step) {
-    watch.slack = tight_watch;
-    watch.largest_gain = tight_gain;
-  }
-  return watch;
+  const EnergyWatch watch = subject_.energy_watch(start);
+  return options_.step ? watch : tightened(watch);
 }
 
 std::optional<StepPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {

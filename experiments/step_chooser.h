@@ -10,6 +10,10 @@
 
 namespace springstab {
 
+/// The watch of a run that can be saved: it fires at three times the speed that energy conservation allows,
+/// and at a gain of all the energy of that speed.
+EnergyWatch tightened(EnergyWatch watch);
+
 /// The paper's rule made a policy. A step that the user gave is kept, come what may. Otherwise the step is
 /// the recommended one, and a divergence that the watch sees is undone: the run is back at its last
 /// checkpoint, k0 is computed for the state there, and the step (and designed damping) chosen for it. A

@@ -1,0 +1,16 @@
+// Theory against simulation, as data: what `springstab divergence` prints and its figures draw.
+#pragma once
+
+#include "experiments/experiments.h"
+#include "experiments/output.h"
+
+namespace springstab {
+
+/// Compares each method's region with simulated cells and each scene's limits with simulated cloth; writes
+/// the CSV files where a folder is given. Keys: cells, disagreements, outside_band (sums over methods),
+/// plane[], duration [s], linear_steps, linear_runs, linear_disagreements, linear_outside_band, safety[] (a
+/// row per scene, damping and method), switching, pendulum. Throws InputError for bad options and unusable
+/// scenes.
+Json divergence(const CommonOptions& common, const DivergenceOptions& options);
+
+}  // namespace springstab

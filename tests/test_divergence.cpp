@@ -1,0 +1,102 @@
+// Theory against simulation: what a study of cloth reports is what its runs did, and the examples explode.
+#include <algorithm>
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+
+#include "analysis/step_limits.h"
+#include "experiments/divergence_cloth.h"
+#include "experiments/divergence_examples.h"
+
+using namespace springstab;
+
+BOOST_AUTO_TEST_SUITE(divergence)
+
+// The least factor whose recommended step is h: recommended_step undoes it.
+BOOST_AUTO_TEST_CASE(the_safety_for_a_step_recommends_that_step) {
+  for (const char* method : {"explicit-euler", "rk4"}) {
+    BOOST_TEST_CONTEXT(method) {
+      const StabilityRegion& region = stability_region(method);
+      const RayleighModes modes{0, 1e6, 1, 5e-4};
+      const double limit = critical_step(region, modes);
+      for (const double ratio : {0.9, 0.3}) {
+        const auto safety = safety_for_step(region, modes, ratio * limit, 1e4);
+        BOOST_REQUIRE(safety);
+        BOOST_TEST(*safety > 1);
+        const double step = recommended_step(region, modes, *safety);
+        BOOST_TEST(step <= ratio * limit * (1 + 1e-9));
+        BOOST_TEST(recommended_step(region, modes, *safety * (1 - 2e-4)) >= ratio * limit * (1 - 1e-9));
+      }
+      BOOST_TEST(*safety_for_step(region, modes, limit, 1e4) == 1);
+      BOOST_TEST(!safety_for_step(region, modes, 1e-12, 1e4).has_value());
+      // The unit of time changes nothing.
+      const RayleighModes slower{0, 1e-12, 1e-9, 5e5};
+      BOOST_TEST(*safety_for_step(region, slower, 0.5e9 * limit, 1e4) ==
+                     *safety_for_step(region, modes, 0.5 * limit, 1e4),
+                 boost::test_tools::tolerance(1e-3));
+    }
+  }
+}
+
+// A frozen cloth diverges above its limit and nowhere below; a hardly moving scene does as its linear system.
+BOOST_AUTO_TEST_CASE(a_cloth_leaves_its_limits_where_theory_says) {
+  SceneDescription description;
+  description.geometry = Grid{4, 4};
+  description.pins.kind = Pins::Kind::first_row;
+  Subject subject(description);
+  ClothStudyOptions options;
+  options.duration = 0.1;
+  options.linear_steps = 1000;
+  options.ratios = {0.6, 0.97, 1.4};
+  const ClothStudy study = study_cloth("net", subject, options, [](double) {});
+  BOOST_TEST(study.outside_band == 0);
+  long below = 0, above = 0;
+  for (const ClothRun& run : study.runs) {
+    BOOST_TEST_CONTEXT(run.method << ", " << run.damping << ", " << run.ratio) {
+      if (run.linear && run.ratio < 1) BOOST_TEST(!run.diverged);
+      (run.diverged ? above : below) += 1;
+      BOOST_TEST(run.steps > 0);
+    }
+  }
+  BOOST_TEST(below > 20);
+  BOOST_TEST(above > 15);
+  for (const NeededSafety& needed : study.needed) {
+    BOOST_TEST_CONTEXT(needed.method << ", " << needed.damping) {
+      // Bounded up to the largest ratio before the first run of the scene that diverged.
+      double bounded = 0;
+      for (const ClothRun& run : study.runs)
+        if (!run.linear && run.method == needed.method && run.damping == needed.damping) {
+          if (run.diverged) break;
+          bounded = run.ratio;
+        }
+      BOOST_TEST(needed.bounded_ratio.value_or(0) == bounded);
+      BOOST_TEST((needed.k0_growth >= 1 && needed.k0_growth < 1.1));
+      if (needed.factor) BOOST_TEST((*needed.factor >= 1 && *needed.factor < 4));
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_scene_with_damping_of_its_own_is_refused) {
+  SceneDescription description;
+  description.geometry = Grid{3, 3};
+  description.material = SpringMaterial{.damping = {1, 0, 0}};
+  Subject subject(description);
+  BOOST_CHECK_THROW(study_cloth("net", subject, {}, [](double) {}), std::invalid_argument);
+}
+
+BOOST_AUTO_TEST_CASE(steps_that_are_stable_each_grow_in_turn) {
+  const Switching s = switching_oscillator();
+  BOOST_TEST((s.radius_soft < 1 && s.radius_stiff < 1));
+  // λ of the product of the four matrices [[1, 1], [-Y, 1 - X]], by hand, to the power of a quarter.
+  BOOST_TEST(s.growth == 1.3160, boost::test_tools::tolerance(1e-3));
+}
+
+BOOST_AUTO_TEST_CASE(a_linearized_pendulum_explodes_where_symplectic_euler_swings) {
+  const Pendulum p = swinging_pendulum();
+  BOOST_REQUIRE(p.exploded_at.has_value());
+  BOOST_TEST((*p.exploded_at > 0.2 && *p.exploded_at < 3));
+  BOOST_TEST(p.symplectic_largest_energy < 1.1);
+  BOOST_REQUIRE(p.samples.size() > 10u);
+  for (const Pendulum::Sample& sample : p.samples) BOOST_TEST(std::isfinite(sample.linearized));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

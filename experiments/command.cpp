@@ -211,119 +211,118 @@ void add_work_precision(CLI::App& app, const CommonOptions& common, WorkPrecisio
       "JSON: reference {method, error}, contestants[] {name, library, limit, runs[]}, provenance, files.\n\n"
       "example: springstab work-precision --grid 16x16 --pin first-row --duration 0.1 --output precision");
   command->callback([&] {
-    chosen =
-        [&] {
-          o.designed_damping = damping == "designed";
-          return run_work_precision(common, o);
-        }
+    chosen = [&] {
+      o.designed_damping = damping == "designed";
+      return run_work_precision(common, o);
+    };
+  });
+}
 
-    void
-    add_divergence(CLI::App & app, const CommonOptions& common, DivergenceOptions& o,
-                   std::function<int()>& chosen) {
-      CLI::App* command = app.add_subcommand("divergence", "Compares regions and limits with simulations");
-      command->add_option("SCENES", o.scenes, "scene files and meshes, besides the built-in scenes")
-          ->type_name("FILE");
-      command->add_option("--pin", o.pin, "pins of the meshes: particle numbers like 0,5-9")
-          ->capture_default_str();
-      command->add_option("--cells", o.cells, "cells of the X-Y plane, per side")->capture_default_str();
-      command->add_option("--steps", o.steps, "steps of each cell")->capture_default_str();
-      command->add_flag("--quick", o.quick, "small scenes, few steps; 100 cells a side unless given");
-      command->add_option("--output", o.output, "folder for the CSV files")->type_name("DIR");
-      command->footer(
-          "X-Y plane: one oscillator per cell and method; `differ` counts those that diverge where |λ| <= 1 "
-          "or "
-          "the "
-          "other\nway round, `outside it` those of them where |ρ - 1| is large enough to be seen in that "
-          "many "
-          "steps.\n"
-          "Cloth: runs at 0.5 to 1.5 of the limit of the linear system at the start. `bounded`: up to this "
-          "ratio "
-          "no run of\nthe scene diverged. `k0 grows`: largest k0(t)/k0(0). `needs F`: the safety factor on "
-          "k0 "
-          "that "
-          "would have given\nsuch a step. - where the shortest step tried diverged.\n\n"
-          "example: springstab divergence skirt.obj --pin 0-15 --output results");
-      command->callback([&, command] {
-        chosen = [&, command] {
-          if (o.quick && command->count("--cells") == 0) o.cells = 100;
-          if (o.quick && command->count("--steps") == 0) o.steps = 500;
-          return run_divergence(common, o);
-        };
-      });
-    }
+void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOptions& o,
+                    std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("divergence", "Compares regions and limits with simulations");
+  command->add_option("SCENES", o.scenes, "scene files and meshes, besides the built-in scenes")
+      ->type_name("FILE");
+  command->add_option("--pin", o.pin, "pins of the meshes: particle numbers like 0,5-9")
+      ->capture_default_str();
+  command->add_option("--cells", o.cells, "cells of the X-Y plane, per side")->capture_default_str();
+  command->add_option("--steps", o.steps, "steps of each cell")->capture_default_str();
+  command->add_flag("--quick", o.quick, "small scenes, few steps; 100 cells a side unless given");
+  command->add_option("--output", o.output, "folder for the CSV files")->type_name("DIR");
+  command->footer(
+      "X-Y plane: one oscillator per cell and method; `differ` counts those that diverge where |λ| <= 1 "
+      "or "
+      "the "
+      "other\nway round, `outside it` those of them where |ρ - 1| is large enough to be seen in that "
+      "many "
+      "steps.\n"
+      "Cloth: runs at 0.5 to 1.5 of the limit of the linear system at the start. `bounded`: up to this "
+      "ratio "
+      "no run of\nthe scene diverged. `k0 grows`: largest k0(t)/k0(0). `needs F`: the safety factor on "
+      "k0 "
+      "that "
+      "would have given\nsuch a step. - where the shortest step tried diverged.\n\n"
+      "example: springstab divergence skirt.obj --pin 0-15 --output results");
+  command->callback([&, command] {
+    chosen = [&, command] {
+      if (o.quick && command->count("--cells") == 0) o.cells = 100;
+      if (o.quick && command->count("--steps") == 0) o.steps = 500;
+      return run_divergence(common, o);
+    };
+  });
+}
 
-    void add_figures(CLI::App & app, const CommonOptions& common, FiguresOptions& o,
-                     std::function<int()>& chosen) {
-      CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
-      command
-          ->add_option("NAMES", o.names, "1 to 7 (the paper's), frames, k0 or a method's name (default: all)")
-          ->type_name("");
-      command->add_flag("--quick", o.quick, "fewer simulated cells, smaller cloths");
-      command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
-          ->type_name("DIR")
-          ->capture_default_str();
-      command->add_option("--output", o.output, "folder for the figures and their data")
-          ->type_name("DIR")
-          ->capture_default_str();
-      command->footer("example: springstab figures 1 2 --output figures");
-      command->callback([&] { chosen = [&] { return run_figures(common, o); }; });
-    }
+void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o,
+                 std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
+  command->add_option("NAMES", o.names, "1 to 7 (the paper's), frames, k0 or a method's name (default: all)")
+      ->type_name("");
+  command->add_flag("--quick", o.quick, "fewer simulated cells, smaller cloths");
+  command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--output", o.output, "folder for the figures and their data")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->footer("example: springstab figures 1 2 --output figures");
+  command->callback([&] { chosen = [&] { return run_figures(common, o); }; });
+}
 
 }  // namespace
 
 int run_command(int argc, const char* const* argv) {
-    CommonOptions common;
-    RegionOptions region;
-    LimitsOptions limits;
-    SimulateOptions simulate;
-    ComplexityOptions complexity{.plots = SPRINGSTAB_PLOTS_DIR, .output = ""};
-    WorkPrecisionOptions precision;
-    precision.plots = SPRINGSTAB_PLOTS_DIR;
-    DivergenceOptions divergence;
-    FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
-    std::string damping = "own", precision_damping = "own", hessian = "exact", solver = "cg";
-    std::function<int()> chosen;
+  CommonOptions common;
+  RegionOptions region;
+  LimitsOptions limits;
+  SimulateOptions simulate;
+  ComplexityOptions complexity{.plots = SPRINGSTAB_PLOTS_DIR, .output = ""};
+  WorkPrecisionOptions precision;
+  precision.plots = SPRINGSTAB_PLOTS_DIR;
+  DivergenceOptions divergence;
+  FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
+  std::string damping = "own", precision_damping = "own", hessian = "exact", solver = "cg";
+  std::function<int()> chosen;
 
-    CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
-    app.set_version_flag("--version", SPRINGSTAB_VERSION);
-    app.add_flag("--json", common.json, "one JSON document on stdout");
-    app.add_flag("--quiet", common.quiet, "no progress on stderr");
-    app.add_option("--seed", common.seed, "of everything random")->capture_default_str();
-    app.add_option("--threads", common.threads, "for region and figures")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    app.require_subcommand(1);
-    app.fallthrough();
-    app.footer(
-        "The options above are accepted before and after a subcommand, which has its own --help.\n"
-        "Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
-        "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
-    add_methods(app, common, chosen);
-    add_region(app, common, region, chosen);
-    add_limits(app, common, limits, chosen);
-    add_simulate(app, common, simulate, damping, hessian, solver, chosen);
-    add_complexity(app, common, complexity, chosen);
-    add_work_precision(app, common, precision, precision_damping, chosen);
-    add_divergence(app, common, divergence, chosen);
-    add_figures(app, common, figures, chosen);
+  CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
+  app.set_version_flag("--version", SPRINGSTAB_VERSION);
+  app.add_flag("--json", common.json, "one JSON document on stdout");
+  app.add_flag("--quiet", common.quiet, "no progress on stderr");
+  app.add_option("--seed", common.seed, "of everything random")->capture_default_str();
+  app.add_option("--threads", common.threads, "for region and figures")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer(
+      "The options above are accepted before and after a subcommand, which has its own --help.\n"
+      "Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
+      "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
+  add_methods(app, common, chosen);
+  add_region(app, common, region, chosen);
+  add_limits(app, common, limits, chosen);
+  add_simulate(app, common, simulate, damping, hessian, solver, chosen);
+  add_complexity(app, common, complexity, chosen);
+  add_work_precision(app, common, precision, precision_damping, chosen);
+  add_divergence(app, common, divergence, chosen);
+  add_figures(app, common, figures, chosen);
 
-    try {
-      app.parse(argc, argv);
-      return chosen();
-    } catch (const CLI::ParseError& error) {
-      if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-      std::cerr << "springstab: " << error.what() << "; see springstab --help\n";
-      return bad_input;
-    } catch (const InputError& error) {
-      std::cerr << "springstab: " << error.what() << '\n';
-      return bad_input;
-    } catch (const std::invalid_argument& error) {
-      std::cerr << "springstab: " << error.what() << '\n';
-      return bad_input;
-    } catch (const std::exception& error) {
-      std::cerr << "springstab: internal error: " << error.what() << '\n';
-      return internal_error;
-    }
+  try {
+    app.parse(argc, argv);
+    return chosen();
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::cerr << "springstab: " << error.what() << "; see springstab --help\n";
+    return bad_input;
+  } catch (const InputError& error) {
+    std::cerr << "springstab: " << error.what() << '\n';
+    return bad_input;
+  } catch (const std::invalid_argument& error) {
+    std::cerr << "springstab: " << error.what() << '\n';
+    return bad_input;
+  } catch (const std::exception& error) {
+    std::cerr << "springstab: internal error: " << error.what() << '\n';
+    return internal_error;
+  }
 }
 
 }  // namespace springstab

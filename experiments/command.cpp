@@ -230,18 +230,15 @@ void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOption
   command->add_flag("--quick", o.quick, "small scenes, few steps; 100 cells a side unless given");
   command->add_option("--output", o.output, "folder for the CSV files")->type_name("DIR");
   command->footer(
-      "X-Y plane: one oscillator per cell and method; `differ` counts those that diverge where |λ| <= 1 "
-      "or "
-      "the "
-      "other\nway round, `outside it` those of them where |ρ - 1| is large enough to be seen in that "
-      "many "
-      "steps.\n"
-      "Cloth: runs at 0.5 to 1.5 of the limit of the linear system at the start. `bounded`: up to this "
-      "ratio "
-      "no run of\nthe scene diverged. `k0 grows`: largest k0(t)/k0(0). `needs F`: the safety factor on "
-      "k0 "
-      "that "
-      "would have given\nsuch a step. - where the shortest step tried diverged.\n\n"
+      "X-Y plane: one oscillator per cell and method. `differ` counts those that diverge where |λ| <= 1 or "
+      "stay\n"
+      "bounded where it is larger, `outside it` those of them for which the steps were enough to tell.\n"
+      "Cloth: runs at 0.5 to 1.5 of the limit of the linear system at the start. `bounded`: up to this ratio "
+      "no\n"
+      "run of the scene diverged. `k0 grows`: largest k0(t)/k0(0). `needs F`: the safety factor on k0 that "
+      "would\n"
+      "have given such a step. - where even the shortest step that was tried diverged.\n"
+      "JSON: cells, disagreements, outside_band, plane[], safety[], switching, pendulum.\n\n"
       "example: springstab divergence skirt.obj --pin 0-15 --output results");
   command->callback([&, command] {
     chosen = [&, command] {

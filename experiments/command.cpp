@@ -252,7 +252,10 @@ void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOption
 void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o,
                  std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
-  command->add_option("NAMES", o.names, "1 to 7 (the paper's), frames, k0 or a method's name (default: all)")
+  command
+      ->add_option("NAMES", o.names,
+                   "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs or a method's "
+                   "name (default: all)")
       ->type_name("");
   command->add_flag("--quick", o.quick, "fewer simulated cells, smaller cloths");
   command->add_option("--plots", o.plots, "folder of the gnuplot scripts")

@@ -23,5 +23,6 @@ std::vector<Figure> region_figures();
 std::vector<Figure> drape_figures();   // the paper's Fig. 4, frames over time, k0 over time
 std::vector<Figure> timing_figures();  // its Figs. 5 to 7
 std::vector<Figure> divergence_figures();
+std::vector<Figure> precision_figures();  // error against run time, long runs
 
 }  // namespace springstab

@@ -1,10 +1,10 @@
 # Error against cost, a row of two panels per contest: CPU seconds, and passes over all springs or blocks.
-# Needs: type ('svg' or 'png'), output_file, footer, panels, repetitions, time_limit, designed, series and for each
+# Needs: type ('svg' or 'png'), output_file, footer, panels, repetitions, designed, series and for each
 # series name_i; for each contest data_i, title_i, floor_i (100 times the reference's own error), and for the orders
 # 1 and 4 order<p>_i (0 or 1), order<p>_x_i, order<p>_n_i, order<p>_y_i: a point that the line of that order passes.
 # Reads data_i: blocks of seconds,least,most,error,equivalents,at_limit,outcome (0 finished, 1 diverged, 2 timed out).
 
-height = 400 * panels + 210
+height = 425 * panels + 185
 if (type eq 'svg') {
     set terminal svg size 1100,height font 'DejaVu Sans,12' background '#ffffff'
 } else {
@@ -38,17 +38,18 @@ set border 3
 set tics out nomirror
 set grid lw 0.5 lc rgb '#e4e4e4'
 largest = 10.
+outside = 1e9   # of every range: nothing is drawn
 shown(error) = error > largest ? largest : error
 set object 1 rectangle from graph 0, first 12 to graph 1, first 100 behind fillcolor rgb '#f2f2f2' fillstyle solid noborder
 
 # Panel `row` from the top, column 0 or 1.
-top_of(row) = 1 - (50. + 400. * (row - 1)) / height
-bottom_of(row) = 1 - (50. + 400. * (row - 1) + 320.) / height
+top_of(row) = 1 - (50. + 425. * (row - 1)) / height
+bottom_of(row) = 1 - (50. + 425. * (row - 1) + 320.) / height
 
 set multiplot
 set label 1 footer at screen 0.01, 14. / height left font ',8' textcolor rgb '#555555'
-set label 2 sprintf('Bars from the fastest to the slowest of %d runs. Large rings: the largest step below the stability limit (known limits only). Time limit of a run: %g s.', \
-    repetitions, time_limit) at screen 0.01, 32. / height left font ',8' textcolor rgb '#555555'
+set label 2 sprintf('Bars from the fastest to the slowest of %d runs. Large rings: the largest step below the stability limit (known limits only).', \
+    repetitions) at screen 0.01, 32. / height left font ',8' textcolor rgb '#555555'
 set label 3 'Passes: force evaluations, Hessian assemblies and products with K or D, each of which goes over all springs or blocks once.' \
     at screen 0.01, 50. / height left font ',8' textcolor rgb '#555555'
 
@@ -63,14 +64,13 @@ do for [row = 1:panels] {
         set xlabel (side == 0 ? 'CPU time   (s)' : 'passes over all springs or blocks') offset 0, 0.3
         set ylabel (side == 0 ? 'error of the trajectory (relative, L₂)' . (designed ? ' against own damping' : '') : '')
         set label 11 'diverged ×, out of time △' at graph 0, graph 1.03 left font ',8' textcolor rgb '#777777'
-        set arrow 1 from graph 0, first of('floor', row) to graph 1, first of('floor', row) nohead dt 3 lc rgb '#777777'
         set label 12 '100 × error of the reference' at graph 0.01, first of('floor', row) offset 0, 0.5 left \
             font ',8' textcolor rgb '#777777'
         x_of(p) = of(side == 0 ? sprintf('order%d_x', p) : sprintf('order%d_n', p), row)
         line(p, x) = of(sprintf('order%d_y', p), row) * (x / x_of(p))**(-p) * 2.5
-        in_reach(p, x) = (x > x_of(p) / 30 && x < x_of(p) * 1.3 && line(p, x) < largest) ? line(p, x) : NaN
+        in_reach(p, x) = (of(sprintf('order%d', p), row) && x > x_of(p) / 30 && x < x_of(p) * 1.3 && line(p, x) < largest) ? line(p, x) : NaN
         if (side == 0 && row == panels) {
-            set key at screen 0.5, 168. / height center top vertical maxrows 4 Left reverse samplen 2 spacing 1.2 font ',10'
+            set key at screen 0.5, 150. / height center top vertical maxrows 4 Left reverse samplen 2 spacing 1.2 font ',10'
         } else {
             unset key
         }
@@ -86,19 +86,23 @@ do for [row = 1:panels] {
         }
         set yrange [*:100]
         set xrange [least / 1.5:most * 1.5]
+        ordered = designed ? 0 : 1
         bars = side == 0 ? series : 0
         plot for [i = 1:bars] data index i - 1 using 1:(shown($4)):2:3 with xerrorbars pt 0 lw 1 \
                  lc rgb colour(name(i)) notitle, \
              for [i = 1:series] data index i - 1 using c:(shown($4)) with linespoints pt point(name(i)) ps 1 \
-                 lw (library(name(i)) ? 1 : 1.6) dt dash(name(i)) lc rgb colour(name(i)) title name(i), \
-             for [i = 1:series] data index i - 1 using ($6 == 1 ? column(c) : NaN):(shown($4)) with points pt 6 ps 2 lw 1.5 \
+                 lw (library(name(i)) ? 1 : 1.6) dt dash(name(i)) lc rgb colour(name(i)) notitle, \
+             for [i = 1:series] data index i - 1 using c:($6 == 1 ? shown($4) : outside) with points pt 6 ps 2 lw 1.5 \
                  lc rgb colour(name(i)) notitle, \
-             for [i = 1:series] data index i - 1 using ($7 == 1 ? column(c) : NaN):(22) with points pt 2 ps 0.9 lw 1.5 \
+             for [i = 1:series] data index i - 1 using c:($7 == 1 ? 22 : outside) with points pt 2 ps 0.9 lw 1.5 \
                  lc rgb colour(name(i)) notitle, \
-             for [i = 1:series] data index i - 1 using ($7 == 2 ? column(c) : NaN):(55) with points pt 8 ps 1 lw 1.5 \
+             for [i = 1:series] data index i - 1 using c:($7 == 2 ? 55 : outside) with points pt 8 ps 1 lw 1.5 \
                  lc rgb colour(name(i)) notitle, \
-             for [k = 0:1] order = 1 + 3 * k, in_reach(order, x) with lines lw 4 dt 3 lc rgb '#bbbbbb' \
-                 title (k == 0 ? 'slopes of order 1 and 4' : '')
+             for [k = 0:1] order = 1 + 3 * k, in_reach(order, x) with lines lw 4 dt 3 lc rgb '#bbbbbb' notitle, \
+             of('floor', row) with lines lw 1 dt 3 lc rgb '#777777' notitle, \
+             for [i = 1:series] keyentry with linespoints pt point(name(i)) ps 1 lw (library(name(i)) ? 1 : 1.6) \
+                 dt dash(name(i)) lc rgb colour(name(i)) title name(i), \
+             for [k = 1:ordered] keyentry with lines lw 4 dt 3 lc rgb '#bbbbbb' title 'slopes of order 1 and 4'
         unset label 1
         unset label 2
         unset label 3

@@ -182,7 +182,7 @@ ContestResult run_contest(Problem& problem, const std::string& cache, const Cont
                        .options = options,
                        .series = {}};
   std::vector<Contestant> contestants = method_contestants(problem);
-  if (options.libraries)
+  if (options.libraries && !problem.is_designed())  // libraries have no step to fit damping to
     for (Contestant& peer : peer_contestants(problem)) contestants.push_back(std::move(peer));
   Climb climb(problem, result.reference, options);
   for (std::size_t i = 0; i < contestants.size(); ++i) {

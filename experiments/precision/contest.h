@@ -42,7 +42,7 @@ struct Contestant {
 struct ContestOptions {
   double time_limit = 0.5;  // of one run, CPU seconds
   int repetitions = 5;      // that are timed, after one that is not
-  bool libraries = true;
+  bool libraries = true;    // but not where the damping is fitted to a step
 };
 
 struct ContestRun {

@@ -57,10 +57,11 @@ const ContestRun* finest(const ContestSeries& s) {
 std::string settings_of(const ContestResult& result, const std::string& data, std::size_t panel) {
   std::string settings =
       text("data_%zu=", panel) + gnuplot_literal(data) + text("; title_%zu=", panel) +
-      gnuplot_literal(result.title + text("; k₀ = %.3g 1/s², %g s", result.k0, result.duration)) +
+      gnuplot_literal(result.title + text("; k₀ = %.3g 1/s², %g s simulated; runs of up to %g CPU-s",
+                                          result.k0, result.duration, result.options.time_limit)) +
       text("; floor_%zu=%.3g; ", panel, 100 * result.reference.error.trajectory);
   for (const auto& [order, method] : {std::pair{1, "symplectic Euler"}, {4, "Runge-Kutta 4"}}) {
-    const ContestRun* run = finest(result.of(method));
+    const ContestRun* run = result.designed ? nullptr : finest(result.of(method));
     settings += text("order%d_%zu=%d; order%d_x_%zu=%.6g; order%d_n_%zu=%.6g; order%d_y_%zu=%.6g; ", order,
                      panel, run != nullptr, order, panel, run ? run->median_seconds() : 1, order, panel,
                      run ? static_cast<double>(run->equivalents()) : 1, order, panel,
@@ -79,7 +80,9 @@ std::string cheapest_table(const std::vector<ContestResult>& results) {
   table += '\n';
   for (const ContestResult& result : results)
     for (bool libraries : {false, true}) {
-      if (libraries && !result.options.libraries) continue;
+      const bool any = std::ranges::any_of(
+          result.series, [&](const ContestSeries& s) { return s.contestant.library == libraries; });
+      if (!any) continue;
       table += "| " + (libraries ? "" : result.title) + (libraries ? " | a library |" : " | springstab |");
       for (double wanted : wanted_errors) table += " " + cell(cheapest(result, wanted, libraries)) + " |";
       table += '\n';
@@ -90,11 +93,9 @@ std::string cheapest_table(const std::vector<ContestResult>& results) {
 std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const std::string& base,
                                         const std::string& plots) {
   std::vector<std::string> files;
-  std::string settings =
-      text("panels=%zu; repetitions=%d; time_limit=%g; designed=%d; footer=", results.size(),
-           results.front().options.repetitions, results.front().options.time_limit,
-           results.front().designed) +
-      gnuplot_literal(provenance()) + "; ";
+  std::string settings = text("panels=%zu; repetitions=%d; designed=%d; footer=", results.size(),
+                              results.front().options.repetitions, results.front().designed) +
+                         gnuplot_literal(provenance()) + "; ";
   for (std::size_t i = 0; i < results.size(); ++i) {
     const std::string part = results.size() == 1 ? base : base + text("_%zu", i + 1);
     write_runs(part + ".csv", results[i]);

@@ -1,6 +1,5 @@
 #include "experiments/precision/problem.h"
 
-#include "analysis/general_damping.h"
 #include "experiments/measured_run.h"
 #include "solvers/io/input_error.h"
 
@@ -66,10 +65,12 @@ void Problem::set_own_damping() {
 std::optional<double> Problem::limit(std::string_view method) {
   if (!k0_.converged) return std::nullopt;
   if (designed_) return springstab::design_damping(stability_region(method), k0_.value, damping_.d0).h_max;
+  const bool general = damping_.kind == DampingModel::Kind::general;
+  if (general && !general_damping_)
+    general_damping_ =
+        std::make_unique<GeneralDamping>(structure_, k0_, damping_, 1, false, ArpackOptions{.seed = seed_});
   const MethodLimits limits =
-      damping_.kind == DampingModel::Kind::general
-          ? GeneralDamping(structure_, k0_, damping_, 1, false, {.seed = seed_}).limits(method)
-          : method_limits(method, k0_, damping_, 1);
+      general ? general_damping_->limits(method) : method_limits(method, k0_, damping_, 1);
   if (limits.status == LimitStatus::unknown) return std::nullopt;
   if (limits.status == LimitStatus::unlimited) return std::numeric_limits<double>::infinity();
   return limits.h_max.value_or(0);

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/general_damping.h"
 #include "experiments/experiments.h"
 #include "experiments/input/subject.h"
 #include "solvers/spring_chain.h"
@@ -14,6 +15,8 @@ namespace springstab {
 
 class Problem {
  public:
+  Problem(const Problem&) = delete;
+  Problem& operator=(const Problem&) = delete;
   Problem(std::string title, Subject subject, double duration, const CommonOptions& common);
   /// Starts at rest, displaced by x [m].
   Problem(std::string title, SpringChain chain, const Vector& x, double duration,
@@ -57,6 +60,7 @@ class Problem {
   StructuralMatrices structure_;
   DampingModel damping_;
   StiffestMode k0_;
+  std::unique_ptr<GeneralDamping> general_damping_;  // made when asked for; refers to the two above
   double set_up_seconds_ = 0;
   bool designed_ = false;
   std::uint64_t seed_ = 1;

@@ -28,6 +28,14 @@ point(name) = has(name, 'linearized explicit') ? 4 : has(name, 'linearized Runge
 library(name) = has(name, 'ARKODE') || has(name, 'CVODE') || has(name, 'odeint') || has(name, 'GSL')
 dash(name) = library(name) ? 2 : 1
 name(i) = value(sprintf('name_%d', i))
+# By the number of a block, from 0.
+colour_of(block) = colour(name(int(block) + 1))
+point_of(block) = point(name(int(block) + 1))
+library_of(block) = library(name(int(block) + 1))
+libraries = 0
+do for [i = 1:series] {
+    libraries = libraries || library(name(i))
+}
 of(what, i) = value(sprintf('%s_%d', what, i))
 
 set logscale xy
@@ -87,17 +95,20 @@ do for [row = 1:panels] {
         set yrange [*:100]
         set xrange [least / 1.5:most * 1.5]
         ordered = designed ? 0 : 1
-        bars = side == 0 ? series : 0
-        plot for [i = 1:bars] data index i - 1 using 1:(shown($4)):2:3 with xerrorbars pt 0 lw 1 \
-                 lc rgb colour(name(i)) notitle, \
-             for [i = 1:series] data index i - 1 using c:(shown($4)) with linespoints pt point(name(i)) ps 1 \
-                 lw (library(name(i)) ? 1 : 1.6) dt dash(name(i)) lc rgb colour(name(i)) notitle, \
-             for [i = 1:series] data index i - 1 using c:($6 == 1 ? shown($4) : outside) with points pt 6 ps 2 lw 1.5 \
-                 lc rgb colour(name(i)) notitle, \
-             for [i = 1:series] data index i - 1 using c:($7 == 1 ? 22 : outside) with points pt 2 ps 0.9 lw 1.5 \
-                 lc rgb colour(name(i)) notitle, \
-             for [i = 1:series] data index i - 1 using c:($7 == 2 ? 55 : outside) with points pt 8 ps 1 lw 1.5 \
-                 lc rgb colour(name(i)) notitle, \
+        bars = side == 0 ? 1 : 0
+        plot for [k = 1:bars] data using 1:(shown($4)):2:3:(colour_of(column(-2))) with xerrorbars pt 0 lw 1 \
+                 lc rgb variable notitle, \
+             data using c:(library_of(column(-2)) ? NaN : shown($4)):(point_of(column(-2))):(colour_of(column(-2))) \
+                 with linespoints pt variable ps 1 lw 1.6 lc rgb variable notitle, \
+             for [k = 1:libraries] data using \
+                 c:(library_of(column(-2)) ? shown($4) : NaN):(point_of(column(-2))):(colour_of(column(-2))) \
+                 with linespoints pt variable ps 1 lw 1 dt 2 lc rgb variable notitle, \
+             data using c:($6 == 1 ? shown($4) : outside):(colour_of(column(-2))) with points pt 6 ps 2 lw 1.5 \
+                 lc rgb variable notitle, \
+             data using c:($7 == 1 ? 22 : outside):(colour_of(column(-2))) with points pt 2 ps 0.9 lw 1.5 \
+                 lc rgb variable notitle, \
+             data using c:($7 == 2 ? 55 : outside):(colour_of(column(-2))) with points pt 8 ps 1 lw 1.5 \
+                 lc rgb variable notitle, \
              for [k = 0:1] order = 1 + 3 * k, in_reach(order, x) with lines lw 4 dt 3 lc rgb '#bbbbbb' notitle, \
              of('floor', row) with lines lw 1 dt 3 lc rgb '#777777' notitle, \
              for [i = 1:series] keyentry with linespoints pt point(name(i)) ps 1 lw (library(name(i)) ? 1 : 1.6) \

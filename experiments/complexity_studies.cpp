@@ -11,34 +11,34 @@ namespace springstab {
 namespace {
 
 // The paper's contestants, and symplectic Euler. LEU and linearized RK4 evaluate forces every 0.01 s.
-const Contestant eu{"EU", "explicit-euler"};
-const Contestant leu{"LEU", "linearized-explicit-euler"};
-const Contestant linear_rk4{"RK4 linear", "linearized-rk4"};
-const Contestant symplectic{"symplectic Euler", "symplectic-euler"};
+const Racer eu{"EU", "explicit-euler"};
+const Racer leu{"LEU", "linearized-explicit-euler"};
+const Racer linear_rk4{"RK4 linear", "linearized-rk4"};
+const Racer symplectic{"symplectic Euler", "symplectic-euler"};
 
 // Implicit Euler as in the paper, with LEU's damping, and with the better preconditioner.
-Contestant implicit(const std::string& name, DampingRule damping, Preconditioner preconditioner,
-                    double tolerance) {
+Racer implicit(const std::string& name, DampingRule damping, Preconditioner preconditioner,
+               double tolerance) {
   return {name, "implicit-euler", damping, preconditioner, tolerance};
 }
-const Contestant imp = implicit("IMP", DampingRule::drag, Preconditioner::block_jacobi, 1e-3);
-const Contestant imp_damped = implicit("IMP, D of LEU", DampingRule::leu, Preconditioner::block_jacobi, 1e-3);
-const Contestant imp_ssor = implicit("IMP SSOR", DampingRule::drag, Preconditioner::block_ssor, 1e-3);
-const Contestant imp_tight = implicit("IMP SSOR 1e-6", DampingRule::drag, Preconditioner::block_ssor, 1e-6);
+const Racer imp = implicit("IMP", DampingRule::drag, Preconditioner::block_jacobi, 1e-3);
+const Racer imp_damped = implicit("IMP, D of LEU", DampingRule::leu, Preconditioner::block_jacobi, 1e-3);
+const Racer imp_ssor = implicit("IMP SSOR", DampingRule::drag, Preconditioner::block_ssor, 1e-3);
+const Racer imp_tight = implicit("IMP SSOR 1e-6", DampingRule::drag, Preconditioner::block_ssor, 1e-6);
 
-std::vector<Heat> on_drapes(const std::vector<Contestant>& contestants, const std::vector<Drape>& drapes,
+std::vector<Heat> on_drapes(const std::vector<Racer>& contestants, const std::vector<Drape>& drapes,
                             double duration, const CommonOptions& common) {
   std::vector<Heat> heats;
   for (const Drape& drape : drapes) {
     const StiffestMode k0 = k0_of(drape, common);
-    for (const Contestant& contestant : contestants) heats.push_back({contestant, drape, k0, duration});
+    for (const Racer& contestant : contestants) heats.push_back({contestant, drape, k0, duration});
   }
   return heats;
 }
 
 std::vector<Heat> heats_of(Study study, bool quick, const CommonOptions& common) {
   const double duration = quick ? 0.1 : 0.5;
-  const std::vector<Contestant> all{imp, imp_damped, imp_ssor, imp_tight, eu, leu, linear_rk4, symplectic};
+  const std::vector<Racer> all{imp, imp_damped, imp_ssor, imp_tight, eu, leu, linear_rk4, symplectic};
   std::vector<Drape> drapes;
   switch (study) {
     case Study::particles:
@@ -56,7 +56,7 @@ std::vector<Heat> heats_of(Study study, bool quick, const CommonOptions& common)
       std::vector<Heat> heats;
       for (double h :
            quick ? std::vector{0.001, 0.005, 0.02} : std::vector{0.0005, 0.001, 0.002, 0.005, 0.01, 0.02})
-        for (const Contestant& contestant : {imp, imp_damped, imp_ssor})
+        for (const Racer& contestant : {imp, imp_damped, imp_ssor})
           heats.push_back({contestant, drape, k0, duration, h});
       return heats;
     }
@@ -65,7 +65,7 @@ std::vector<Heat> heats_of(Study study, bool quick, const CommonOptions& common)
       const StiffestMode k0 = k0_of(drape, common);
       std::vector<Heat> heats;
       for (double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6})
-        for (Contestant contestant : {imp, imp_damped, imp_ssor}) {
+        for (Racer contestant : {imp, imp_damped, imp_ssor}) {
           contestant.cg_tolerance = tolerance;
           heats.push_back({contestant, drape, k0, duration});
         }
@@ -151,7 +151,7 @@ void write_runs(const std::string& path, const StudyResult& result) {
   for (const Series& series : result.series)
     for (const HeatResult& p : series.points)
       for (std::size_t round = 0; round < p.cpu_seconds.size(); ++round) {
-        const Contestant& c = p.heat.contestant;
+        const Racer& c = p.heat.contestant;
         const bool implicit = p.counts.cg_iterations > 0;
         out << '"' << c.name << "\"," << c.method << ',' << (implicit ? name(c.preconditioner) : "") << ',';
         if (implicit) out << c.cg_tolerance;

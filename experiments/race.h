@@ -22,7 +22,7 @@ enum class DampingRule {
   leu,       // the alpha of linearized explicit Euler on the same drape
 };
 
-struct Contestant {
+struct Racer {
   std::string name, method;
   DampingRule damping = DampingRule::designed;
   Preconditioner preconditioner = Preconditioner::block_ssor;  // of implicit Euler
@@ -35,7 +35,7 @@ StiffestMode k0_of(const Drape& drape, const CommonOptions& common);
 /// One contestant on one drape. `interval` is the step of an implicit method and the time between
 /// linearizations of a linearized one [s]; explicit steps follow from k0 with the safety factor 1.5.
 struct Heat {
-  Contestant contestant;
+  Racer contestant;
   Drape drape;
   StiffestMode k0;        // of the drape
   double duration = 0.5;  // [s]

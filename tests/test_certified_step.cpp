@@ -238,7 +238,8 @@ BOOST_AUTO_TEST_CASE(certified_steps_are_sharp_where_dampers_resist_what_springs
   BOOST_TEST(rk2[100] >= 0.8);
   BOOST_TEST(rk2[10] >= 0.5);
   const std::vector<double> euler = certified_shares("explicit-euler", 9, 200, damped);
-  // On single nets, where D' - hK' is singular but for rounding, the proof depends on how sums are ordered.
+  // One net of these is proved in one build and not in another; no more than that one may fail.
+  BOOST_TEST(euler[1] > 0);
   BOOST_TEST(euler[100] >= 0.98);
   BOOST_TEST(euler[10] >= 0.5);
   const std::vector<double> rk4 = certified_shares("rk4", 10, 200, damped);

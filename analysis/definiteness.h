@@ -25,7 +25,7 @@ class DefinitenessProof {
   struct Factor;
 
   SparseMatrix mass_, damping_, stiffness_;
-  double mass_size_, damping_size_, stiffness_size_;  // largest absolute row sums
+  Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
   std::unique_ptr<Factor> factor_;
 };
 

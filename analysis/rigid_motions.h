@@ -8,8 +8,8 @@ namespace springstab {
 /// The structure with as many unknowns held as it has motions v with K v = D v = 0, chosen so that none of
 /// them is left. A matrix A that vanishes on those motions is positive semidefinite iff it is so on the
 /// unknowns that are left: any x differs by such a motion from one that is zero at the held unknowns.
-/// A motion counts where a pivot of the factorization of K + D, each scaled to a unit diagonal, is below
-/// 1e-9: stiffness and damping of rounding's size. K and D must be positive semidefinite.
+/// A motion counts where xᵀ(K + D)x, each of unit size, is of rounding's size: 1e-12 of what each unknown has
+/// alone, or 1e-14 of the stiffest. K and D must be positive semidefinite.
 StructuralMatrices without_rigid_motions(const StructuralMatrices& s);
 
 }  // namespace springstab

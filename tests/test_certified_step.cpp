@@ -238,12 +238,30 @@ BOOST_AUTO_TEST_CASE(certified_steps_are_sharp_where_dampers_resist_what_springs
   BOOST_TEST(rk2[100] >= 0.8);
   BOOST_TEST(rk2[10] >= 0.5);
   const std::vector<double> euler = certified_shares("explicit-euler", 9, 200, damped);
-  // One net of these is proved in one build and not in another; no more than that one may fail.
-  BOOST_TEST(euler[1] > 0);
+  BOOST_TEST(euler[0] > 0);
   BOOST_TEST(euler[100] >= 0.98);
   BOOST_TEST(euler[10] >= 0.5);
   const std::vector<double> rk4 = certified_shares("rk4", 10, 200, damped);
   BOOST_TEST(rk4[100] >= 0.98);
+}
+
+// A net near a mechanism has small pivots that are not rounding, and rounding that is not small.
+BOOST_AUTO_TEST_CASE(as_many_unknowns_are_held_as_there_are_rigid_motions) {
+  RandomNets random(13);
+  int fewer = 0;
+  for (int i = 0; i < 1000; ++i) BOOST_TEST_CONTEXT("net " << i) {
+      const StructuralMatrices s = matrices(random.net(false));
+      const Eigen::MatrixXd k = mass_scaled_dense(s.stiffness, s), d = mass_scaled_dense(s.damping, s);
+      Eigen::MatrixXd sum = k / k.diagonal().maxCoeff();
+      if (!d.isZero(0)) sum += d / d.diagonal().maxCoeff();
+      const Eigen::VectorXd scale = sum.diagonal().cwiseSqrt().cwiseInverse();
+      sum = scale.asDiagonal() * sum * scale.asDiagonal();
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(sum, Eigen::EigenvaluesOnly);
+      const Eigen::Index rank = (solver.eigenvalues().array() > 1e-12).count();
+      BOOST_TEST(without_rigid_motions(s).size() == rank);
+      fewer += rank < s.size();
+    }
+  BOOST_TEST(fewer > 500);
 }
 
 BOOST_AUTO_TEST_CASE(rigid_motions_cut_no_certificate) {

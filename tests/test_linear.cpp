@@ -2,6 +2,7 @@
 // matrices that no structure has are refused by name.
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <functional>
@@ -84,10 +85,8 @@ void fill_definite(BlockSparseMatrix& a, double size, Random& random) {
       } catch (const std::out_of_range&) {
         continue;
       }
-      const long upper = a.find(j, i);
       for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c)
-          a.block(lower)[3 * r + c] = a.block(upper)[3 * c + r] = size * random(-0.5, 0.5);
+        for (int c = 0; c < 3; ++c) a.block(lower)[3 * r + c] = size * random(-0.5, 0.5);
         a.block(a.diagonal(i))[4 * r] += 1.5 * size;
         a.block(a.diagonal(j))[4 * r] += 1.5 * size;
       }
@@ -146,9 +145,7 @@ BlockLinearSystem chain(int particles, double k) {
   const double axis[3] = {0, 0, 0};
   for (int i = 0; i < particles; ++i) {
     add_isotropic_and_axial(a.block(a.diagonal(i)), 2 * k, 0, axis);
-    if (i == 0) continue;
-    add_isotropic_and_axial(a.block(a.find(i, i - 1)), -k, 0, axis);
-    add_isotropic_and_axial(a.block(a.find(i - 1, i)), -k, 0, axis);
+    if (i > 0) add_isotropic_and_axial(a.block(a.find(i, i - 1)), -k, 0, axis);
   }
   return system;
 }
@@ -180,7 +177,7 @@ BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
         BlockSparseMatrix a(rows, couplings);
         std::set<IndexPair> pattern;
         for (int i = 0; i < rows; ++i) pattern.emplace(i, i);
-        for (const auto& [i, j] : couplings) pattern.insert({{i, j}, {j, i}});
+        for (const auto& [i, j] : couplings) pattern.emplace(std::max(i, j), std::min(i, j));
         BOOST_TEST(a.rows() == rows);
         BOOST_TEST(a.blocks() == static_cast<long>(pattern.size()));
 
@@ -195,8 +192,11 @@ BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
             const long where = a.find(i, j);
             places.insert(where);
             if (i == j) BOOST_TEST(where == a.diagonal(i));
-            for (int r = 0; r < 9; ++r)
-              dense(3 * i + r / 3, 3 * j + r % 3) = a.block(where)[r] = random(-1, 1);
+            for (int r = 0; r < 9; ++r) a.block(where)[r] = random(-1, 1);
+            Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(a.block(where));
+            if (i == j) block = Dense(block + block.transpose());
+            dense.block<3, 3>(3 * i, 3 * j) = block;
+            dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
           }
         BOOST_TEST(places.size() == pattern.size(), "two blocks share a place");
         BOOST_TEST((*places.begin() == 0 && *places.rbegin() == a.blocks() - 1));
@@ -209,6 +209,9 @@ BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
         const Vector bound = 3 * rows * eps * (dense.cwiseAbs() * in.cwiseAbs());
         BOOST_TEST(((out - dense * in).array().abs() <= bound.array()).all());
         BOOST_TEST(out.norm() > 0);
+        const Vector once = out;
+        a.multiply(in.data(), out.data());
+        BOOST_TEST((out == once));
 
         a.set_zero();
         BOOST_TEST(a.to_sparse().nonZeros() == 0);
@@ -224,7 +227,7 @@ BOOST_AUTO_TEST_CASE(a_block_outside_the_matrix_is_an_error) {
     BOOST_CHECK_THROW(a.find(wrong.first, wrong.second), std::out_of_range);
   }
   const IndexPair inside[] = {{2, 0}};
-  BOOST_TEST(BlockSparseMatrix(3, inside).blocks() == 5);
+  BOOST_TEST(BlockSparseMatrix(3, inside).blocks() == 4);
 }
 
 BOOST_AUTO_TEST_CASE(products_of_a_block_system_are_the_dense_ones) {
@@ -330,10 +333,8 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
   const auto set = [&](double a, double c) {
     BlockSparseMatrix& values = system.stiffness();
     values.set_zero();
-    for (const int i : {0, 1}) {
-      add_isotropic_and_axial(values.block(values.diagonal(i)), a, 0, none);
-      add_isotropic_and_axial(values.block(values.find(i, 1 - i)), -c, 0, none);
-    }
+    for (const int i : {0, 1}) add_isotropic_and_axial(values.block(values.diagonal(i)), a, 0, none);
+    add_isotropic_and_axial(values.block(values.find(1, 0)), -c, 0, none);
   };
   Random random(4);
   const Vector rhs = random.vector(6);

@@ -97,15 +97,14 @@ void plain_product(benchmark::State& state) {
   const BlockSparseMatrix& k = n.scene->linearized(n.state.x, n.state.v).stiffness();
   Vector out(n.state.x.size());
   run(state, n, product_bytes(k), 0, [&] {
-    for (int i = 0; i < k.rows(); ++i) {
-      double sum[3] = {0, 0, 0};
-      for (long place = k.row_begin(i); place < k.row_begin(i + 1); ++place) {
-        const double* b = k.block(place);
-        const double* u = n.state.x.data() + 3 * static_cast<long>(k.column(place));
-        for (int r = 0; r < 3; ++r) sum[r] += b[3 * r] * u[0] + b[3 * r + 1] * u[1] + b[3 * r + 2] * u[2];
+    out.setZero();
+    for (int i = 0; i < k.rows(); ++i)
+      for (long place = k.row_begin(i); place <= k.diagonal(i); ++place) {
+        const int j = k.column(place);
+        const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(k.block(place));
+        out.segment<3>(3 * i) += block * n.state.x.segment<3>(3 * j);
+        if (i != j) out.segment<3>(3 * j) += block.transpose() * n.state.x.segment<3>(3 * i);
       }
-      std::copy(sum, sum + 3, out.data() + 3 * static_cast<long>(i));
-    }
   });
 }
 

@@ -4,6 +4,8 @@
 #include <Eigen/OrderingMethods>
 #include <algorithm>
 
+#include "solvers/linear/four.h"
+
 namespace springstab {
 namespace {
 
@@ -11,21 +13,22 @@ using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 using BlockAt = Eigen::Map<Block>;
 using ConstBlockAt = Eigen::Map<const Block>;
 using WideBlock = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;  // the last column zero
-using Four = Eigen::Array4d;
-using FourAt = Eigen::Map<Four>;
 
-// Every block (i, j) of the two matrices together, some twice.
+// Every block (i, j), i >= j, of the two matrices together, some twice.
 template <class Visit>
 void for_each_block(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping,
                     const Visit& visit) {
   for (const BlockSparseMatrix* a : {&stiffness, damping})
     for (int i = 0; a && i < a->rows(); ++i)
-      for (long p = a->row_begin(i); p < a->row_begin(i + 1); ++p) visit(i, a->column(p));
+      for (long p = a->row_begin(i); p <= a->diagonal(i); ++p) visit(i, a->column(p));
 }
 
 std::vector<int> minimum_degree_order(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping) {
   std::vector<Eigen::Triplet<double>> entries;
-  for_each_block(stiffness, damping, [&](int i, int j) { entries.emplace_back(i, j, 1.0); });
+  for_each_block(stiffness, damping, [&](int i, int j) {
+    entries.emplace_back(i, j, 1.0);
+    entries.emplace_back(j, i, 1.0);
+  });
   Eigen::SparseMatrix<double> graph(stiffness.rows(), stiffness.rows());
   graph.setFromTriplets(entries.begin(), entries.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
@@ -43,7 +46,7 @@ void BlockCholesky::set_pattern(const BlockSparseMatrix& stiffness, const BlockS
 
   std::vector<std::pair<int, int>> above;  // column, row
   for_each_block(stiffness, damping, [&](int i, int j) {
-    if (place_[i] < place_[j]) above.emplace_back(place_[j], place_[i]);
+    if (i != j) above.emplace_back(std::max(place_[i], place_[j]), std::min(place_[i], place_[j]));
   });
   std::sort(above.begin(), above.end());
   above.erase(std::unique(above.begin(), above.end()), above.end());
@@ -53,6 +56,9 @@ void BlockCholesky::set_pattern(const BlockSparseMatrix& stiffness, const BlockS
     above_.push_back(row);
   }
   for (int k = 0; k < n; ++k) above_start_[k + 1] += above_start_[k];
+
+  stiffness_.set(stiffness, place_);
+  if (damping) damping_.set(*damping, place_);
 
   visited_.assign(n, -1);
   path_.resize(n);
@@ -92,13 +98,32 @@ void BlockCholesky::for_each_in_row_of_l(int k, const Visit& visit) {
   for (; first < rows(); ++first) visit(reach_[first]);
 }
 
-// Adds the blocks of H's column k down to the diagonal, which by symmetry are those of its row.
-void BlockCholesky::scatter(int k, double factor, const BlockSparseMatrix& matrix) {
-  const int row = order_[k];
-  for (long p = matrix.row_begin(row); p < matrix.row_begin(row + 1); ++p)
-    if (const int i = place_[matrix.column(p)]; i <= k)
-      Eigen::Map<WideBlock>(&column_[12 * static_cast<long>(i)]).leftCols<3>() +=
-          factor * ConstBlockAt(matrix.block(p)).transpose();
+void BlockCholesky::Columns::set(const BlockSparseMatrix& matrix, const std::vector<int>& place) {
+  start_.assign(place.size() + 1, 0);
+  const auto for_each = [&](const auto& visit) {
+    for (int i = 0; i < matrix.rows(); ++i)
+      for (long p = matrix.row_begin(i); p <= matrix.diagonal(i); ++p)
+        visit(place[i], place[matrix.column(p)], p);
+  };
+  for_each([&](int i, int j, long) { ++start_[std::max(i, j) + 1]; });
+  for (std::size_t k = 0; k < place.size(); ++k) start_[k + 1] += start_[k];
+  entries_.resize(start_.back());
+  std::vector<long> next = start_;
+  for_each([&](int i, int j, long p) { entries_[next[std::max(i, j)]++] = {std::min(i, j), i > j, p}; });
+}
+
+void BlockCholesky::Columns::add(int k, double factor, const BlockSparseMatrix& matrix,
+                                 std::vector<double>& to) const {
+  for (long e = start_[k]; e < start_[k + 1]; ++e) {
+    const auto [row, transposed, where] = entries_[e];
+    const ConstBlockAt block(matrix.block(where));
+    auto place = Eigen::Map<WideBlock>(&to[12 * static_cast<long>(row)]).leftCols<3>();
+    if (transposed) {
+      place += factor * block.transpose();
+    } else {
+      place += factor * block;
+    }
+  }
 }
 
 bool BlockCholesky::factorize(double m, const std::vector<double>& mass, double k_factor,
@@ -109,8 +134,8 @@ bool BlockCholesky::factorize(double m, const std::vector<double>& mass, double 
   std::fill(column_.begin(), column_.end(), 0.0);
   std::copy(start_.begin(), start_.end() - 1, end_.begin());
   for (int k = 0; k < rows(); ++k) {
-    scatter(k, k_factor, stiffness);
-    if (damping) scatter(k, c, *damping);
+    stiffness_.add(k, k_factor, stiffness, column_);
+    if (damping) damping_.add(k, c, *damping, column_);
     Eigen::Map<WideBlock> diagonal(&column_[12 * static_cast<long>(k)]);
     Block pivot = diagonal.leftCols<3>();
     pivot.diagonal().array() += m * mass[order_[k]];

@@ -27,15 +27,32 @@ class BlockCholesky {
   long blocks() const { return static_cast<long>(row_.size()); }
 
  private:
+  /// What a matrix has in the columns of H above the diagonal and on it, in the new numbers.
+  class Columns {
+   public:
+    void set(const BlockSparseMatrix& matrix, const std::vector<int>& place);
+    /// to += factor · column k; to has 12 numbers per block, rows of four.
+    void add(int k, double factor, const BlockSparseMatrix& matrix, std::vector<double>& to) const;
+
+   private:
+    struct Entry {
+      int row;
+      bool transposed;
+      long block;
+    };
+    std::vector<long> start_;
+    std::vector<Entry> entries_;
+  };
+
   void set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping);
   int rows() const { return static_cast<int>(order_.size()); }
   template <class Visit>
   void for_each_in_row_of_l(int k, const Visit& visit);
-  void scatter(int k, double factor, const BlockSparseMatrix& matrix);
 
   std::vector<int> order_, place_;  // new -> old and old -> new number of a row
-  std::vector<int> parent_;         // in the elimination tree, -1 at a root
-  std::vector<long> above_start_;   // what H has above its diagonal, by columns in the new numbers
+  Columns stiffness_, damping_;
+  std::vector<int> parent_;        // in the elimination tree, -1 at a root
+  std::vector<long> above_start_;  // what H has above its diagonal, by columns in the new numbers
   std::vector<int> above_;
   std::vector<long> start_, end_;  // the columns of L below the diagonal, as far as they are filled
   std::vector<int> row_;

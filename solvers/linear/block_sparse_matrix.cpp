@@ -8,28 +8,26 @@ namespace springstab {
 
 BlockSparseMatrix::BlockSparseMatrix(int rows, std::span<const std::pair<int, int>> couplings) {
   std::vector<std::pair<int, int>> entries;
-  entries.reserve(rows + 2 * couplings.size());
+  entries.reserve(rows + couplings.size());
   for (int i = 0; i < rows; ++i) entries.emplace_back(i, i);
   for (const auto& [i, j] : couplings) {
     if (i < 0 || j < 0 || i >= rows || j >= rows)
       throw std::invalid_argument("coupling (" + std::to_string(i) + ", " + std::to_string(j) +
                                   ") is outside a matrix of " + std::to_string(rows) + " block rows");
-    entries.emplace_back(i, j);
-    entries.emplace_back(j, i);
+    entries.emplace_back(std::max(i, j), std::min(i, j));
   }
   std::sort(entries.begin(), entries.end());
   entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
 
   row_start_.assign(rows + 1, 0);
-  diagonal_.resize(rows);
   column_.reserve(entries.size());
   for (const auto& [i, j] : entries) {
-    if (i == j) diagonal_[i] = static_cast<long>(column_.size());
     column_.push_back(j);
     ++row_start_[i + 1];
   }
   for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
   value_.assign(9 * column_.size() + 1, 0.0);
+  sum_.setZero(4 * static_cast<long>(rows));
 }
 
 long BlockSparseMatrix::find(int i, int j) const {
@@ -51,13 +49,15 @@ void BlockSparseMatrix::multiply(const double* in, double* out) const {
 
 Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {
   std::vector<Eigen::Triplet<double>> triplets;
-  triplets.reserve(value_.size());
+  triplets.reserve(2 * value_.size());
   for (int i = 0; i < rows(); ++i)
     for (long k = row_start_[i]; k < row_start_[i + 1]; ++k)
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
-          if (const double v = value_[9 * k + 3 * r + c]; v != 0)
+          if (const double v = value_[9 * k + 3 * r + c]; v != 0) {
             triplets.emplace_back(3 * i + r, 3 * column_[k] + c, v);
+            if (column_[k] != i) triplets.emplace_back(3 * column_[k] + c, 3 * i + r, v);
+          }
   Eigen::SparseMatrix<double> matrix(3 * rows(), 3 * rows());
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   return matrix;

@@ -1,8 +1,9 @@
-// A square sparse matrix of 3x3 blocks, for the stiffness and damping of particle systems.
+// A symmetric sparse matrix of 3x3 blocks, for the stiffness and damping of particle systems. Only the lower
+// triangle is stored: half the memory, and half of what a product reads.
 //
 // Invariants: block rows are stored one after another (compressed rows); within a row the columns ascend and
-// do not repeat; every diagonal block is stored; the pattern is symmetric. A block is 9 doubles, row by row.
-// The pattern is fixed at construction, values change.
+// do not repeat; the last one is the diagonal block, which is stored in every row and is symmetric. A block
+// is 9 doubles, row by row. The pattern is fixed at construction, values change.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -10,75 +11,95 @@
 #include <utility>
 #include <vector>
 
+#include "solvers/linear/four.h"
+
 namespace springstab {
 
 class BlockSparseMatrix {
  public:
-  /// `rows` block rows, with the diagonal and the blocks (i, j) and (j, i) of each coupling.
+  /// `rows` block rows, with the diagonal and what each coupling (i, j) has below it.
   /// Throws std::invalid_argument for an index out of range.
   BlockSparseMatrix(int rows, std::span<const std::pair<int, int>> couplings);
 
-  int rows() const { return static_cast<int>(diagonal_.size()); }
+  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
+  /// Those stored.
   long blocks() const { return static_cast<long>(column_.size()); }
 
-  /// Where block (i, j) is stored; throws std::out_of_range if it is not in the pattern.
+  /// Where block (i, j), i >= j, is stored; throws std::out_of_range if it is not in the pattern.
   long find(int i, int j) const;
   double* block(long where) { return &value_[9 * where]; }
   const double* block(long where) const { return &value_[9 * where]; }
-  long diagonal(int i) const { return diagonal_[i]; }
-  /// The blocks of row i are those from row_begin(i) to before row_begin(i + 1).
+  long diagonal(int i) const { return row_start_[i + 1] - 1; }
+  /// The blocks of row i are those from row_begin(i) to diagonal(i).
   long row_begin(int i) const { return row_start_[i]; }
   int column(long where) const { return column_[where]; }
 
   /// What the matrix takes in memory.
   std::size_t bytes() const {
-    return sizeof(double) * value_.size() + sizeof(int) * column_.size() +
-           sizeof(long) * (row_start_.size() + diagonal_.size());
+    return sizeof(double) * (value_.size() + static_cast<std::size_t>(sum_.size())) +
+           sizeof(int) * column_.size() + sizeof(long) * row_start_.size();
   }
 
   void set_zero();
 
-  /// out = A in; both of length 3·rows(), not overlapping. Moves 76 bytes per block and 48 per row.
+  /// out = A in; both of length 3·rows(), not overlapping. Moves 76 bytes per block and 120 per row. Not for
+  /// two threads at a time: it works in memory of the matrix's own.
   void multiply(const double* in, double* out) const;
 
-  /// The same, row by row in order: take(i, y) gets the three numbers of row i, so that what is done with the
-  /// product needs no further pass over memory.
+  /// The same, row by row from the last to the first: take(i, y) gets the three numbers of row i, so that
+  /// what is done with the product needs no further pass over memory.
   template <class Take>
   void multiply_rows(const double* in, const Take& take) const;
 
+  /// Both triangles.
   Eigen::SparseMatrix<double> to_sparse() const;
 
  private:
   std::vector<long> row_start_;
   std::vector<int> column_;
-  std::vector<long> diagonal_;
-  std::vector<double> value_;  // 9 per block, and one to read beyond the last
+  std::vector<double> value_;    // 9 per block, and one to read beyond the last
+  mutable Eigen::VectorXd sum_;  // of a product, what the rows below have added: 4 per row, zeros in between
 };
 
-// Blocks are read by rows of four numbers, of which the last belongs to what follows: its product is dropped
-// at the end of the row. Of the vector's last particle there is nothing to follow, it is read from a copy.
+// Block (i, j) serves row i and, transposed, row j, to which the rows below have added all they have by the
+// time it is its turn. Blocks are read by rows of four numbers, of which the last belongs to what follows:
+// its product is dropped at the end of the row. Sums are padded to four, lest a vector is read back that lies
+// across two which have not left the store buffer yet.
 template <class Take>
 void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const {
-  using Four = Eigen::Array4d;
-  using FourAt = Eigen::Map<const Four>;
   constexpr long ahead =
       256;  // numbers to prefetch, two kilobytes: the hardware alone reaches 80 % of the memory
   const int last = rows() - 1;
   const double* const in_last = in + 3 * static_cast<long>(last);
   const double copy[4] = {in_last[0], in_last[1], in_last[2], 0};
-  const double* b = value_.data();
-  for (int i = 0; i <= last; ++i) {
-    Four s0 = Four::Zero(), s1 = s0, s2 = s0;
-    for (long k = row_start_[i]; k < row_start_[i + 1]; ++k, b += 9) {
-      __builtin_prefetch(b + ahead);
-      __builtin_prefetch(b + ahead + 8);
-      const int j = column_[k];
-      const FourAt u(j == last ? copy : in + 3 * static_cast<long>(j));
-      s0 += FourAt(b) * u;
-      s1 += FourAt(b + 3) * u;
-      s2 += FourAt(b + 6) * u;
+  const long* const row_start = row_start_.data();
+  const int* const column = column_.data();
+  const double* b = value_.data() + 9 * blocks();
+  double* const sum = sum_.data();
+  for (int i = last; i >= 0; --i) {
+    const double* const ui = i == last ? copy : in + 3 * static_cast<long>(i);
+    const Four u0 = Four::Constant(ui[0]), u1 = Four::Constant(ui[1]), u2 = Four::Constant(ui[2]);
+    const Four u = ConstFourAt(ui);
+    b -= 9;
+    Four s0 = ConstFourAt(b) * u, s1 = ConstFourAt(b + 3) * u, s2 = ConstFourAt(b + 6) * u;
+    for (long k = row_start[i + 1] - 1; k-- > row_start[i];) {
+      b -= 9;
+      __builtin_prefetch(b - ahead);
+      __builtin_prefetch(b - ahead + 8);
+      const long j = column[k];
+      const Four r0 = ConstFourAt(b), r1 = ConstFourAt(b + 3), r2 = ConstFourAt(b + 6),
+                 uj = ConstFourAt(in + 3 * j);
+      s0 += r0 * uj;
+      s1 += r1 * uj;
+      s2 += r2 * uj;
+      FourAt to(sum + 4 * j);
+      to += r0 * u0 + r1 * u1 + r2 * u2;
     }
-    take(i, Eigen::Vector3d(s0[0] + s0[1] + s0[2], s1[0] + s1[1] + s1[2], s2[0] + s2[1] + s2[2]));
+    FourAt own(sum + 4 * static_cast<long>(i));
+    const Four total = own + sums_of_three(s0, s1, s2);
+    own = Four::Zero();
+    const Eigen::Vector3d y(total[0], total[1], total[2]);
+    take(i, y);
   }
 }
 

@@ -2,14 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cstring>
+
+#include "solvers/linear/four.h"
 
 namespace springstab {
 namespace {
-
-using Four = Eigen::Array4d;
-using FourAt = Eigen::Map<Four>;
-using ConstFourAt = Eigen::Map<const Four>;
 
 // Blocks have rows of three. Read as four, the last number belongs to what follows and is dropped in the end.
 struct Rows {
@@ -25,27 +22,6 @@ struct Rows {
   }
   Four transposed_times(const double* w) const { return r0 * w[0] + r1 * w[1] + r2 * w[2]; }
 };
-
-// (Σ a, Σ b, Σ c, 0) over the first three of each, without leaving the vector registers: the next row waits
-// for it.
-Four sums_of_three(const Four& a, const Four& b, const Four& c) {
-  using Register [[gnu::vector_size(32)]] = double;
-  const auto load = [](Register& to, const Four& from) { std::memcpy(&to, from.data(), sizeof to); };
-  Register ra, rb, rc, zero{};
-  load(ra, a);
-  load(rb, b);
-  load(rc, c);
-  const Register ab_even = __builtin_shufflevector(ra, rb, 0, 4, 2, 6);  // a0 b0 a2 b2
-  const Register ab_odd = __builtin_shufflevector(ra, rb, 1, 5, 3, 7);   // a1 b1 a3 b3
-  const Register c_even = __builtin_shufflevector(rc, zero, 0, 4, 2, 6);
-  const Register c_odd = __builtin_shufflevector(rc, zero, 1, 5, 3, 7);
-  const Register sum = __builtin_shufflevector(ab_even, c_even, 0, 1, 4, 5) +
-                       __builtin_shufflevector(ab_odd, c_odd, 0, 1, 4, 5) +
-                       __builtin_shufflevector(ab_even, c_even, 2, 3, 6, 7);
-  Four out;
-  std::memcpy(out.data(), &sum, sizeof sum);
-  return out;
-}
 
 }  // namespace
 

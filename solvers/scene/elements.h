@@ -161,30 +161,29 @@ class BlockPlaces {
           add_on_diagonal(blocks.entry + 9 * upper<corners>(c, c), lane,
                           matrix.block(matrix.diagonal(particles[c])));
         for (int d = c + 1; d < corners; ++d, ++pair) {
-          if (place[pair].above < 0) continue;
-          add_off_diagonal(blocks.entry + 9 * upper<corners>(c, d), lane, matrix.block(place[pair].above),
-                           matrix.block(place[pair].below));
+          if (place[pair] < 0) continue;
+          const Entries entry = blocks.entry + 9 * upper<corners>(c, d);
+          if (particles[c] > particles[d]) {
+            add(entry, lane, matrix.block(place[pair]));
+          } else {
+            add_transposed(entry, lane, matrix.block(place[pair]));
+          }
         }
       }
     }
   }
 
  private:
-  /// Of a pair of corners (c, d), c < d: the blocks (c, d) and (d, c); -1 where one of them is pinned.
-  struct Pair {
-    int above, below;
-  };
-  using Place = std::array<Pair, corners*(corners - 1) / 2>;
+  /// Of each pair of corners, where the block below the diagonal is that couples them; -1 if one is pinned.
+  using Place = std::array<int, corners*(corners - 1) / 2>;
 
   static Place look_up(const Elements<corners>& elements, const std::array<int, corners>& particles,
                        const BlockSparseMatrix& matrix) {
     Place place;
     for (int c = 0, pair = 0; c < corners; ++c)
       for (int d = c + 1; d < corners; ++d, ++pair) {
-        const int p = particles[c], q = particles[d];
-        place[pair] = elements.is_free(p) && elements.is_free(q)
-                          ? Pair{static_cast<int>(matrix.find(p, q)), static_cast<int>(matrix.find(q, p))}
-                          : Pair{-1, -1};
+        const auto [low, high] = std::minmax(particles[c], particles[d]);
+        place[pair] = elements.is_free(high) ? static_cast<int>(matrix.find(high, low)) : -1;
       }
     return place;
   }
@@ -200,13 +199,13 @@ class BlockPlaces {
     to[6] += xz, to[7] += yz, to[8] += zz;
   }
 
-  static void add_off_diagonal(Entries entry, int lane, double* above, double* below) {
+  static void add(Entries entry, int lane, double* to) {
+    for (int r = 0; r < 9; ++r) to[r] += entry[r][lane];
+  }
+
+  static void add_transposed(Entries entry, int lane, double* to) {
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) {
-        const double value = entry[3 * r + c][lane];
-        above[3 * r + c] += value;
-        below[3 * c + r] += value;
-      }
+      for (int c = 0; c < 3; ++c) to[3 * c + r] += entry[3 * r + c][lane];
   }
 
   const BlockSparseMatrix* matrix_ = nullptr;

@@ -26,9 +26,6 @@ Stiffness projected_stiffness_of(double stiffness, double rest_length, double sq
   return s.a < 0 ? Stiffness{0, stiffness / squared_length} : s;  // what is not a number stays so
 }
 
-using Four = Eigen::Array4d;
-using FourAt = Eigen::Map<Four>;
-
 // a I + b uuᵀ, symmetric to the last bit, in rows of four numbers of which the last is zero.
 struct SpringBlock {
   Four r0 = Four::Zero(), r1 = r0, r2 = r0;
@@ -86,7 +83,7 @@ Couplings ParticlePairs::couplings() const {
 
 long ParticlePairs::find_place(const BlockSparseMatrix& matrix, int i, int pair) const {
   const int other = i_[pair] == i ? j_[pair] : i_[pair];
-  return other < free_count_ ? matrix.find(i, other) : -1;
+  return other < i ? matrix.find(i, other) : -1;
 }
 
 void ParticlePairs::bind(const BlockSparseMatrix& matrix) {

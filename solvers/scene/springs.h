@@ -56,7 +56,8 @@ class ParticlePairs {
   template <class At>
   void gather_from(const At& at, int begin, int count, Vectors& out) const;
 
-  /// Where the block that a pair of i stands for is in row i of a matrix; -1 beside a pinned particle.
+  /// Where the block that a pair of i stands for is in row i of a matrix; -1 if it lies above the diagonal or
+  /// beside a pinned particle.
   long find_place(const BlockSparseMatrix& matrix, int i, int pair) const;
 
   std::vector<int> i_, j_;

@@ -91,8 +91,7 @@ MethodLimits GeneralDamping::limits(std::string_view method) {
 
 MethodLimits GeneralDamping::compute(std::string_view method) {
   MethodLimits limits = method_limits(method, k0_, damping_, safety_);
-  if (limits.status != LimitStatus::unknown || !k0_.converged || k0_.indefinite || !damping_.semidefinite)
-    return limits;
+  if (limits.status != LimitStatus::unknown || !limits.unproved.empty()) return limits;
   if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
     add_exact(*condition, limits);
   } else {
@@ -108,6 +107,17 @@ std::vector<Stiffening> GeneralDamping::stiffenings() const {
   return all;
 }
 
+void GeneralDamping::set_certified(std::optional<double> h, Proof proof, MethodLimits& limits) {
+  limits.h_certified = h;
+  if (h) {
+    limits.proof = proof;
+  } else {
+    limits.unproved = s_.size() > DefinitenessProof::factorization_limit
+                          ? "there are too many unknowns to factorize a matrix"
+                          : "no convex part of the region was proved to hold the damping and stiffness";
+  }
+}
+
 void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits) {
   double least = infinity;
   for (const Stiffening& stiffening : stiffenings()) {
@@ -117,12 +127,14 @@ void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits)
     least = std::min(least, *h);
   }
   limits.status = std::isinf(*limits.h_max) ? LimitStatus::unlimited : LimitStatus::limited;
-  if (proofs_) limits.h_certified = proved_limit(certified_.proof(), condition, *limits.h_max);
+  if (proofs_)
+    set_certified(proved_limit(certified_.proof(), condition, *limits.h_max), Proof::matrix_condition,
+                  limits);
   if (std::isfinite(least)) limits.recommended = least;
 }
 
 void GeneralDamping::add_certified(std::string_view method, MethodLimits& limits) {
-  if (proofs_) limits.h_certified = certified_.certified(method);
+  if (proofs_) set_certified(certified_.certified(method), Proof::polygon, limits);
   double least = limits.h_certified.value_or(infinity);
   const std::vector<Stiffening> all = stiffenings();
   for (const Stiffening& stiffening : std::span(all).subspan(limits.h_certified ? 1 : 0)) {

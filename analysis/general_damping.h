@@ -33,12 +33,13 @@ class GeneralDamping {
   GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
                  double safety, bool proofs, const ArpackOptions& options = {});
 
-  /// Unknown where K or D is indefinite.
+  /// Unknown where K or D is indefinite, with that as the reason.
   MethodLimits limits(std::string_view method);
 
  private:
   MethodLimits compute(std::string_view method);
   std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
+  void set_certified(std::optional<double> h, Proof proof, MethodLimits& limits);
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
   void add_certified(std::string_view method, MethodLimits& limits);
   void add_estimate(std::string_view method, MethodLimits& limits);

@@ -30,6 +30,8 @@ DampingModel rayleigh_fit(const StructuralMatrices& s) {
 
 std::optional<double> positive(double h) { return h > 0 ? std::optional(h) : std::nullopt; }
 
+constexpr std::string_view indefinite_stiffness = "K is indefinite";
+
 LimitStatus status_of(double h) {
   return h == 0 ? LimitStatus::none : std::isinf(h) ? LimitStatus::unlimited : LimitStatus::limited;
 }
@@ -52,39 +54,55 @@ MethodLimits method_limits(std::string_view method, const StiffestMode& k0, cons
                            double safety) {
   const StabilityRegion& region = stability_region(method);
   MethodLimits limits;
-  if (!k0.converged) return limits;
+  if (!k0.converged) {
+    limits.unproved = "k0 did not converge";
+    return limits;
+  }
   if (damping.kind == DampingModel::Kind::general) {
-    if (!region.constants().covers_quadrant || !damping.semidefinite || k0.indefinite) return limits;
-    limits.status = LimitStatus::unlimited;
-    limits.h_max = limits.h_certified = std::numeric_limits<double>::infinity();
+    if (k0.indefinite || !damping.semidefinite) {
+      limits.unproved = k0.indefinite ? indefinite_stiffness : "D is indefinite";
+    } else if (region.constants().covers_quadrant) {
+      limits.status = LimitStatus::unlimited;
+      limits.h_max = limits.h_certified = std::numeric_limits<double>::infinity();
+      limits.proof = Proof::quadrant;
+    }
     return limits;
   }
 
   const double k_max = std::max(k0.value, 0.0);
-  const double k_bound = k0.indefinite ? std::numeric_limits<double>::infinity() : k0.upper_bound;
   const double proof_margin = 1 - 1e-12;  // for the rounding of the limit itself
+  const auto prove = [&](const auto& limit_up_to) {
+    if (limits.status == LimitStatus::none) {
+      limits.unproved = "no positive step is stable";
+    } else if (k0.indefinite) {
+      limits.unproved = indefinite_stiffness;
+    } else if (!std::isfinite(k0.upper_bound)) {
+      limits.unproved = "k0 has no proved bound";
+    } else if (limits.h_certified = positive(proof_margin * limit_up_to(k0.upper_bound));
+               limits.h_certified) {
+      limits.proof = Proof::k0_bound;
+    } else {
+      limits.unproved = "no positive step is stable up to the bound on k0";
+    }
+  };
   limits.designed = design_damping(region, k_max, damping.d0);
   if (damping.kind == DampingModel::Kind::designed) {
     limits.status = status_of(limits.designed->h_max);
     limits.h_max = positive(limits.designed->h_max);
-    if (std::isfinite(k_bound))
-      limits.h_certified = positive(proof_margin * design_damping(region, k_bound, damping.d0).h_max);
+    prove([&](double k) { return design_damping(region, k, damping.d0).h_max; });
     if (limits.status == LimitStatus::limited)
       limits.recommended = positive(design_damping(region, safety * k_max, damping.d0).h_max);
     return limits;
   }
 
-  RayleighModes modes{std::clamp(k0.smallest.value_or(0), 0.0, k_max), k_max, damping.d0, damping.alpha};
+  const RayleighModes modes{std::clamp(k0.smallest.value_or(0), 0.0, k_max), k_max, damping.d0,
+                            damping.alpha};
   const double h_max = critical_step(region, modes);
   limits.status = status_of(h_max);
   limits.h_max = positive(h_max);
   if (limits.status == LimitStatus::limited)
     limits.recommended = positive(recommended_step(region, modes, safety));
-  if (std::isfinite(k_bound)) {
-    modes.k_min = 0;
-    modes.k_max = k_bound;
-    limits.h_certified = positive(proof_margin * critical_step(region, modes));
-  }
+  prove([&](double k) { return critical_step(region, {0, k, damping.d0, damping.alpha}); });
   return limits;
 }
 

@@ -38,12 +38,23 @@ enum class LimitStatus {
 /// What h_max comes from: exact (for the given k0), or eigenvalues that may not be all that matter.
 enum class LimitSource { exact, estimate };
 
+/// What proves h_certified.
+enum class Proof {
+  none,
+  k0_bound,          // every mode's limit up to the proved bound on k0
+  quadrant,          // every d, k >= 0 is stable
+  matrix_condition,  // the method's own condition on hD' + h²K', factorized
+  polygon            // W lies in a convex polygon of the region, a factorization an edge
+};
+
 /// Steps in seconds. Absent where there is none or it is not known; ∞ where nothing limits.
 struct MethodLimits {
   LimitStatus status = LimitStatus::unknown;
   std::optional<double> h_max;  // supremum of the stable steps with the structure's own damping
   LimitSource source = LimitSource::exact;
   std::optional<double> h_certified;  // proved stable, at most h_max
+  Proof proof = Proof::none;          // of h_certified
+  std::string_view unproved{};        // why there is none
   std::optional<double> recommended;  // with the safety factor; absent also where unlimited
   std::optional<DampingDesign> designed;
 };

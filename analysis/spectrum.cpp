@@ -100,7 +100,8 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   StiffestMode mode = estimated_stiffest_mode(s, options);
   if (is_diagonal(s.mass)) {
     const SparseMatrix matrix = scaled(s.stiffness, inverse_root(s.mass));
-    mode.upper_bound = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
+    mode.gershgorin = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
+    mode.upper_bound = mode.gershgorin;
   }
   if (!mode.converged || s.size() > DefinitenessProof::factorization_limit) return mode;
 

@@ -3,6 +3,7 @@
 // eigenvalues of K'.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "analysis/arpack.h"
@@ -18,9 +19,11 @@ enum class BoundKind {
 
 struct StiffestMode {
   bool converged = false;
-  double value = 0;        // Ritz value, never above k0 but for rounding [1/s²]
-  double residual = 0;     // ‖S u - value u‖ for the unit vector u: some eigenvalue is this close
-  double upper_bound = 0;  // k0 is smaller, proved
+  double value = 0;     // never above k0 but for rounding: a Ritz value where `smallest` is absent [1/s²]
+  double residual = 0;  // ‖S u - value u‖ for the unit vector u: some eigenvalue is this close
+  double gershgorin =
+      std::numeric_limits<double>::infinity();  // k0 is not larger: row sums; ∞ with consistent masses
+  double upper_bound = 0;                       // the least proved bound on k0
   BoundKind bound_kind = BoundKind::gershgorin;
   long products = 0;               // with S; 0 when solved densely
   std::optional<double> smallest;  // k_min where the whole spectrum was computed [1/s²]

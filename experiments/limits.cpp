@@ -2,6 +2,8 @@
 // it.
 #include <cmath>
 #include <iostream>
+#include <map>
+#include <vector>
 
 #include "analysis/general_damping.h"
 #include "experiments/experiments.h"
@@ -10,6 +12,12 @@
 
 namespace springstab {
 namespace {
+
+struct Row {
+  std::string_view method;
+  MethodLimits limits;                 // all unknown if k0 is not
+  std::optional<double> h_every_pose;  // proved for every pose [s]
+};
 
 const char* name(LimitStatus status) {
   switch (status) {
@@ -46,23 +54,62 @@ Json damping_json(const DampingModel& damping) {
   return json;
 }
 
+const char* name(BoundKind kind) { return kind == BoundKind::inertia ? "inertia" : "gershgorin"; }
+
+// Where every eigenvalue was computed, k0 is one; else it is a Ritz value, from below.
+const char* value_kind(const StiffestMode& k0) { return k0.smallest ? "eigenvalue" : "Ritz value"; }
+
+std::optional<double> inertia_bound(const StiffestMode& k0) {
+  return k0.bound_kind == BoundKind::inertia ? std::optional(k0.upper_bound) : std::nullopt;
+}
+
+std::optional<double> gershgorin_bound(const StiffestMode& k0) {
+  return std::isfinite(k0.gershgorin) ? std::optional(k0.gershgorin) : std::nullopt;
+}
+
+std::string bounds(const StiffestMode& k0) {
+  std::string list;
+  if (const auto bound = inertia_bound(k0)) list = text("below %.10g by inertia, ", *bound);
+  if (const auto bound = gershgorin_bound(k0)) list += text("at most %.10g by Gershgorin, ", *bound);
+  return list.empty() ? "not bounded" : list.substr(0, list.size() - 2);
+}
+
 Json k0_json(const StiffestMode& k0) {
-  if (!k0.converged)
-    return {{"value", nullptr},
-            {"status", "not converged"},
-            {"upper_bound", number(k0.upper_bound)},
-            {"residual", nullptr},
-            {"products", k0.products}};
-  return {{"value", number(k0.value)},
-          {"status", "converged"},
-          {"upper_bound", number(k0.upper_bound)},
-          {"bound", k0.bound_kind == BoundKind::inertia ? "inertia" : "gershgorin"},
-          {"residual", number(k0.residual)},
-          {"products", k0.products},
-          {"smallest", number(k0.smallest)}};
+  Json json{
+      {"value", nullptr},
+      {"status", "not converged"},
+      {"value_kind", nullptr},
+      {"residual", nullptr},
+      {"upper_bound", number(k0.upper_bound)},
+      {"bound", name(k0.bound_kind)},
+      {"bounds", {{"inertia", number(inertia_bound(k0))}, {"gershgorin", number(gershgorin_bound(k0))}}},
+      {"products", k0.products},
+      {"smallest", number(k0.smallest)}};
+  if (!k0.converged) return json;
+  json["value"] = number(k0.value);
+  json["status"] = "converged";
+  json["value_kind"] = value_kind(k0);
+  json["residual"] = number(k0.residual);
+  return json;
 }
 
 const char* name(LimitSource source) { return source == LimitSource::exact ? "exact" : "estimate"; }
+
+const char* name(Proof proof) {
+  switch (proof) {
+    case Proof::k0_bound:
+      return "bound on k0";
+    case Proof::quadrant:
+      return "whole quadrant";
+    case Proof::matrix_condition:
+      return "matrix condition";
+    case Proof::polygon:
+      return "polygon";
+    case Proof::none:
+      break;
+  }
+  return "none";
+}
 
 Json limits_json(std::string_view method, const MethodLimits& limits, double d0) {
   Json json{{"name", method},
@@ -70,6 +117,8 @@ Json limits_json(std::string_view method, const MethodLimits& limits, double d0)
             {"h_max", number(limits.h_max)},
             {"h_max_source", limits.h_max ? Json(name(limits.source)) : Json()},
             {"h_certified", number(limits.h_certified)},
+            {"h_certified_source", limits.h_certified ? Json(name(limits.proof)) : Json()},
+            {"reason", limits.h_certified ? Json() : Json(limits.unproved)},
             {"recommended_step", number(limits.recommended)},
             {"designed", nullptr}};
   if (limits.designed)
@@ -86,8 +135,9 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
   if (s.condensed > 0)
     std::cout << text(" (after eliminating %ld without mass)", static_cast<long>(s.condensed));
-  std::cout << text("\nk0 = %.10g 1/s² (proved below %.10g), 2/√k0 = %.6g s\n", k0.value, k0.upper_bound,
-                    2 / std::sqrt(k0.value));
+  std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g), 2/√k0 = %.6g s\n", k0.value, value_kind(k0),
+                    k0.residual, 2 / std::sqrt(k0.value));
+  std::cout << "proved: k0 is " << bounds(k0) << '\n';
   if (k0.indefinite)
     std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";
   std::cout << "damping: " << name(damping.kind);
@@ -97,6 +147,18 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
     std::cout << text(", d0 = %g 1/s, alpha fitted to the step", damping.d0);
   std::cout << text("\n\n%-26s %-10s %12s %12s %14s   %s\n", "method", "status", "h_max [s]", "certified",
                     text("use (F=%g)", safety).c_str(), "with fitted damping: h_max, alpha");
+}
+
+// Why nothing is proved, where the status does not say it.
+void print_reasons(const std::vector<Row>& rows) {
+  std::map<std::string_view, std::string> methods;
+  for (const auto& [method, limits, every_pose] : rows)
+    if (!limits.h_certified && limits.status != LimitStatus::none) {
+      std::string& list = methods[limits.unproved];
+      list += (list.empty() ? "" : ", ") + std::string(method);
+    }
+  for (const auto& [reason, list] : methods)
+    std::cout << '\n' << "not certified, " << reason << ": " << list << '\n';
 }
 
 void print(std::string_view method, const MethodLimits& l) {
@@ -114,18 +176,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   Subject subject(options.input);
   const StructuralMatrices structure = subject.structure(subject.initial_state(common.seed));
   const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
-  if (subject.matrices() && k0.indefinite)
-    throw InputError(
-        options.input.stiffness, 0,
-        "the stiffness matrix is indefinite: the structure is unstable by itself, expected a positive "
-        "semidefinite one");
   const DampingModel damping = subject.damping();
 
-  struct Row {
-    std::string_view method;
-    MethodLimits limits;                 // all unknown if k0 is not
-    std::optional<double> h_every_pose;  // proved for every pose [s]
-  };
   std::vector<Row> rows;
   const bool general = damping.kind == DampingModel::Kind::general && k0.converged;
   std::optional<GeneralDamping> general_damping;
@@ -135,10 +187,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   int status = k0.converged ? done : no_answer;
   for (const MethodInfo& info : all_methods()) {
     if (!options.method.empty() && info.name != options.method) continue;
-    MethodLimits limits;
-    if (k0.converged)
-      limits = general ? general_damping->limits(info.name)
-                       : method_limits(info.name, k0, damping, options.safety);
+    MethodLimits limits =
+        general ? general_damping->limits(info.name) : method_limits(info.name, k0, damping, options.safety);
     std::optional<double> h_every_pose;
     if (const auto condition = stability_region(info.name).exact_condition(); condition && every_pose)
       h_every_pose = proved_limit(*every_pose, *condition, {.seed = common.seed});
@@ -166,13 +216,14 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   } else if (k0.converged) {
     print(structure, k0, damping, options.safety);
     for (const Row& row : rows) print(row.method, row.limits);
+    print_reasons(rows);
     for (const Row& row : rows)
       if (row.h_every_pose)
         std::cout << text("\n%s is stable below %.6g s in every pose of these springs: proved\n",
                           std::string(row.method).c_str(), *row.h_every_pose);
   } else {
-    std::cout << text("k0 did not converge in %ld products; it is below %.10g 1/s²\n", k0.products,
-                      k0.upper_bound);
+    std::cout << text("k0 did not converge in %ld products; proved: it is ", k0.products) << bounds(k0)
+              << '\n';
   }
   return status;
 }

@@ -433,6 +433,46 @@ BOOST_AUTO_TEST_CASE(matrices_give_limits_and_a_trajectory_from_the_seed) {
   BOOST_TEST(close(Json(x1 * x1 + x2 * x2), 1, 1e-14));  // unit M-norm
 }
 
+// No step of an indefinite structure is certified, and it is said why.
+BOOST_AUTO_TEST_CASE(indefinite_matrices_have_no_certificate_but_a_reason) {
+  file("saddle.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n2 2 -1\n");
+  file("bowl.mtx", "%%MatrixMarket matrix coordinate real general\n2 2 2\n1 1 1\n2 2 4\n");
+  const std::pair<std::string, std::string> cases[] = {
+      {"--stiffness saddle.mtx", "K is indefinite"},
+      {"--stiffness saddle.mtx --damping-matrix bowl.mtx", "K is indefinite"},
+      {"--stiffness bowl.mtx --damping-matrix saddle.mtx", "D is indefinite"}};
+  for (const auto& [matrices, reason] : cases) BOOST_TEST_CONTEXT(matrices) {
+      const Outcome shown = (*this)("limits " + matrices);
+      BOOST_TEST(shown.status == 0);
+      BOOST_TEST(shown.out.find("not certified, " + reason) != std::string::npos);
+      const Json report = (*this)("limits " + matrices + " --json").json();
+      for (const Json& limits : report["methods"]) {
+        BOOST_TEST(limits["h_certified"].is_null());
+        BOOST_TEST(limits["h_certified_source"].is_null());
+        BOOST_TEST(limits["reason"] == (limits["status"] == "none" ? "no positive step is stable" : reason));
+      }
+      BOOST_TEST((*this)("limits " + matrices + " --certify").status == 3);
+    }
+}
+
+// Each number that k0 is known by says what it is.
+BOOST_AUTO_TEST_CASE(the_bounds_on_k0_are_labelled) {
+  const Json small = (*this)("limits --grid 4x5 --pin first-row --json").json()["k0"];
+  const Json large = (*this)("limits --grid 9x9 --pin first-row --json").json()["k0"];
+  BOOST_TEST(small["value_kind"] == "eigenvalue");
+  BOOST_TEST(large["value_kind"] == "Ritz value");
+  for (const Json& k0 : {small, large}) {
+    BOOST_TEST(k0["bound"] == "inertia");
+    const double value = k0["value"], inertia = k0["bounds"]["inertia"],
+                 gershgorin = k0["bounds"]["gershgorin"];
+    BOOST_TEST(k0["upper_bound"] == inertia);
+    BOOST_TEST(value < inertia);
+    BOOST_TEST(inertia < value * (1 + 1e-8));
+    BOOST_TEST(inertia < gershgorin);
+    BOOST_TEST(k0["residual"].get<double>() < 1e-8 * value);
+  }
+}
+
 BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
   file("cloth.obj", square);
   file("broken.obj", "v 0 0 0\nv 1 0 zero\nf 1 2 1\n");
@@ -464,7 +504,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
       {"limits --grid 2x2 --method rk3", "rk4"},
       {"limits --grid 2x2 --spacing -1", "--grid"},
       {"limits --stiffness skew.mtx", "not symmetric"},
-      {"limits --stiffness saddle.mtx", "indefinite"},
+      {"simulate --stiffness saddle.mtx --method rk4 --duration 1 --damping designed", "designed"},
       {"limits --stiffness saddle.mtx --mass one.mtx", "mass matrix is 1 x 1"},
       {"limits --mass one.mtx cloth.obj", "--stiffness"},
       {"region rk4 --x 2:1", "--x"},

@@ -327,11 +327,17 @@ BOOST_AUTO_TEST_CASE(a_pinned_scene_is_a_part_of_the_free_one) {
         for (int r = 0; r < 3; ++r) kept[next++] = 3 * i + r;
     BOOST_REQUIRE_EQUAL(pinned.size(), 15);
     BOOST_TEST((all(kept) == x));
-    BOOST_TEST((stiffness(pinned, x) == stiffness(free, all)(kept, kept)));
+    // A block on the diagonal is a sum of at most six, in the order of each scene's own numbers.
+    const auto check_blocks = [](const Dense& found, const Dense& expected) {
+      const double largest = expected.cwiseAbs().maxCoeff();
+      BOOST_TEST((found - expected).cwiseAbs().maxCoeff() <= 6 * 5 * eps * largest);
+      BOOST_TEST(largest > 0);
+    };
+    check_blocks(stiffness(pinned, x), stiffness(free, all)(kept, kept));
     const auto damping = [](Scene& scene, const Vector& at) {
       return Dense(scene.linearized(at, at).own_damping()->to_sparse());
     };
-    BOOST_TEST((damping(pinned, x) == damping(free, all)(kept, kept)));
+    check_blocks(damping(pinned, x), damping(free, all)(kept, kept));
     const Vector v = random.vector(15);
     Vector all_v = Vector::Zero(21);
     all_v(kept) = v;

@@ -120,9 +120,11 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   }
   for (const auto& term : terms_.damping)
     term->add_force(positions, {v.data(), pinned_velocity_.data(), free_count_}, out.data());
+  const double* const w = v.data();
+  double* const a = out.data();
+  const double d0 = damping_.d0, g[3] = {gravity_.x(), gravity_.y(), gravity_.z()};
   for (long i = 0; i < free_count_; ++i)
-    out.segment<3>(3 * i) =
-        inverse_mass_[i] * out.segment<3>(3 * i) + gravity_ - damping_.d0 * v.segment<3>(3 * i);
+    for (int r = 0; r < 3; ++r) a[3 * i + r] = inverse_mass_[i] * a[3 * i + r] + g[r] - d0 * w[3 * i + r];
 }
 
 BlockLinearSystem& Scene::linearized(const Vector& x, const Vector&) {

@@ -2,12 +2,26 @@
 
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace springstab {
 namespace {
 
+constexpr int tile = 192;  // particles whose springs stand together
+
 double dot(const ParticlePairs::Vectors& u, const ParticlePairs::Vectors& w, int k) {
-  return u[0][k] * w[0][k] + u[1][k] * w[1][k] + u[2][k] * w[2][k];
+  return u[3 * k] * w[3 * k] + u[3 * k + 1] * w[3 * k + 1] + u[3 * k + 2] * w[3 * k + 2];
+}
+
+// w = across w + along d, all of w read before any of it is written: the vectorized loop loads it once.
+[[gnu::always_inline]] inline void combine(double across, ParticlePairs::Vectors& w, double along,
+                                           const ParticlePairs::Vectors& d, int k) {
+  const double x = across * w[3 * k] + along * d[3 * k];
+  const double y = across * w[3 * k + 1] + along * d[3 * k + 1];
+  const double z = across * w[3 * k + 2] + along * d[3 * k + 2];
+  w[3 * k] = x;
+  w[3 * k + 1] = y;
+  w[3 * k + 2] = z;
 }
 
 // The stiffness block of a spring is a I + b ddᵀ, d not normalized.
@@ -56,34 +70,49 @@ void add(const SpringBlock& rows, double factor, double* block) {
 
 }  // namespace
 
-ParticlePairs::ParticlePairs(const std::vector<Spring>& springs, int free_count) : free_count_(free_count) {
-  for (const Spring& s : springs) {
-    i_.push_back(s.i);
-    j_.push_back(s.j);
-  }
+std::vector<Spring> ParticlePairs::in_runs(std::vector<Spring> springs) {
+  const auto key = [](const Spring& s) { return std::tuple(s.i / tile, s.j - s.i, s.i); };
+  std::sort(springs.begin(), springs.end(),
+            [&](const Spring& s, const Spring& t) { return key(s) < key(t); });
+  return springs;
+}
+
+ParticlePairs::ParticlePairs(const std::vector<Spring>& springs, int free_count)
+    : size_(static_cast<int>(springs.size())), free_count_(free_count) {
   incident_start_.assign(free_count + 1, 0);
-  for (const std::vector<int>* ends : {&i_, &j_})
-    for (const int end : *ends)
+  for (int k = 0; k < size_; ++k) {
+    const auto [i, j] = std::pair(springs[k].i, springs[k].j);
+    const bool new_batch = k % batch_size == 0;
+    if (new_batch) run_start_.push_back(static_cast<int>(runs_.size()));
+    Run* const last = new_batch ? nullptr : &runs_.back();
+    if (last && i == last->i + last->count && j == last->j + last->count && i != free_count &&
+        j != free_count) {
+      ++last->count;
+    } else {
+      runs_.push_back({i, j, 1});
+    }
+    for (const int end : {i, j})
       if (end < free_count) ++incident_start_[end + 1];
+  }
+  run_start_.push_back(static_cast<int>(runs_.size()));
+
   std::partial_sum(incident_start_.begin(), incident_start_.end(), incident_start_.begin());
   incident_.resize(incident_start_.back());
   std::vector<long> next = incident_start_;
-  for (int k = 0; k < size(); ++k)
-    for (const int end : {i_[k], j_[k]})
-      if (end < free_count) incident_[next[end]++] = k;
-  kept_.resize(i_.size());
+  for (int k = 0; k < size_; ++k) {
+    const auto [i, j] = std::pair(springs[k].i, springs[k].j);
+    if (i < free_count) incident_[next[i]++] = {k, j};
+    if (j < free_count) incident_[next[j]++] = {k, i};
+  }
+  kept_.resize(springs.size());
 }
 
 Couplings ParticlePairs::couplings() const {
   Couplings pairs;
-  for (int k = 0; k < size(); ++k)
-    if (i_[k] < free_count_ && j_[k] < free_count_) pairs.emplace_back(i_[k], j_[k]);
+  for (const Run& run : runs_)
+    for (int k = 0; k < run.count && std::max(run.i, run.j) < free_count_; ++k)
+      pairs.emplace_back(run.i + k, run.j + k);
   return pairs;
-}
-
-long ParticlePairs::find_place(const BlockSparseMatrix& matrix, int i, int pair) const {
-  const int other = i_[pair] == i ? j_[pair] : i_[pair];
-  return other < i ? matrix.find(i, other) : -1;
 }
 
 void ParticlePairs::bind(const BlockSparseMatrix& matrix) {
@@ -91,65 +120,47 @@ void ParticlePairs::bind(const BlockSparseMatrix& matrix) {
   place_.clear();
   for (int i = 0; i < free_count_; ++i)
     for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m)
-      place_.push_back(find_place(matrix, i, incident_[m]));
+      place_.push_back(find_place(matrix, i, incident_[m].other));
 }
 
 template <class At>
-void ParticlePairs::gather_from(const At& at, int begin, int count, Vectors& out) const {
-  const int* const first = &i_[begin];
-  const int* const second = &j_[begin];
-  for (int k = 0; k < count;) {
-    const int i = first[k];
-    const double* const u = at(i);
-    const double u0 = u[0], u1 = u[1], u2 = u[2];
-    do {
-      const double* const w = at(second[k]);
-      out[0][k] = u0 - w[0];
-      out[1][k] = u1 - w[1];
-      out[2][k] = u2 - w[2];
-    } while (++k < count && first[k] == i);
+void ParticlePairs::gather_from(const At& at, int begin, Vectors& out) const {
+  double* to = out;
+  for (const Run& run : runs(begin)) {
+    const double *const u = at(run.i), *const w = at(run.j);
+    const int count = 3 * run.count;
+    for (int r = 0; r < count; ++r) to[r] = u[r] - w[r];
+    to += count;
   }
 }
 
-void ParticlePairs::gather(const ParticleField& u, int begin, int count, Vectors& out) const {
-  gather_from([&](int particle) { return u[particle]; }, begin, count, out);
+void ParticlePairs::gather(const ParticleField& u, int begin, Vectors& out) const {
+  gather_from([&](int particle) { return u[particle]; }, begin, out);
 }
 
-void ParticlePairs::gather(const double* u, int begin, int count, Vectors& out) const {
-  static constexpr double fixed[3] = {0, 0, 0};
+void ParticlePairs::gather(const double* u, int begin, Vectors& out) const {
+  static constexpr double fixed[3 * batch_size] = {};
   gather_from(
       [&](int particle) { return particle < free_count_ ? u + 3 * static_cast<long>(particle) : fixed; },
-      begin, count, out);
+      begin, out);
 }
 
-void ParticlePairs::scatter(const Vectors& u, int begin, int count, double* out) const {
-  const int* const first = &i_[begin];
-  const int* const second = &j_[begin];
-  for (int k = 0; k < count;) {
-    const int i = first[k];
-    double sum0 = 0, sum1 = 0, sum2 = 0;
-    do {
-      sum0 += u[0][k];
-      sum1 += u[1][k];
-      sum2 += u[2][k];
-      if (second[k] < free_count_) {
-        double* const w = out + 3 * static_cast<long>(second[k]);
-        w[0] -= u[0][k];
-        w[1] -= u[1][k];
-        w[2] -= u[2][k];
-      }
-    } while (++k < count && first[k] == i);
-    if (i < free_count_) {
-      double* const w = out + 3 * static_cast<long>(i);
-      w[0] += sum0;
-      w[1] += sum1;
-      w[2] += sum2;
-    }
+void ParticlePairs::scatter(const Vectors& u, int begin, double* out) const {
+  const double* from = u;
+  for (const Run& run : runs(begin)) {
+    const int count = 3 * run.count;
+    double* const i = out + 3 * static_cast<long>(run.i);
+    double* const j = out + 3 * static_cast<long>(run.j);
+    if (run.i < free_count_)
+      for (int r = 0; r < count; ++r) i[r] += from[r];
+    if (run.j < free_count_)
+      for (int r = 0; r < count; ++r) j[r] -= from[r];
+    from += count;
   }
 }
 
 void ParticlePairs::keep(const Numbers& a, const Numbers& b, const Vectors& u, int begin, int count) const {
-  for (int k = 0; k < count; ++k) kept_[begin + k] = {{u[0][k], u[1][k], u[2][k], 0}, a[k], b[k]};
+  for (int k = 0; k < count; ++k) kept_[begin + k] = {{u[3 * k], u[3 * k + 1], u[3 * k + 2], 0}, a[k], b[k]};
 }
 
 void ParticlePairs::add_kept_blocks(BlockSparseMatrix& matrix) const {
@@ -157,9 +168,9 @@ void ParticlePairs::add_kept_blocks(BlockSparseMatrix& matrix) const {
   for (int i = 0; i < free_count_; ++i) {
     SpringBlock sum;
     for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m) {
-      const SpringBlock block(kept_[incident_[m]]);
+      const SpringBlock block(kept_[incident_[m].pair]);
       sum += block;
-      const long place = known ? place_[m] : find_place(matrix, i, incident_[m]);
+      const long place = known ? place_[m] : find_place(matrix, i, incident_[m].other);
       if (place >= 0) add(block, -1, matrix.block(place));
     }
     add(sum, 1, matrix.block(matrix.diagonal(i)));
@@ -176,8 +187,8 @@ Springs::Springs(const std::vector<Spring>& springs, int free_count) : pairs_(sp
 double Springs::energy(const ParticleField& x) const {
   double sum = 0;
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d;
-    pairs_.gather(x, begin, count, d);
+    alignas(64) ParticlePairs::Vectors d;
+    pairs_.gather(x, begin, d);
     for (int k = 0; k < count; ++k) {
       const double stretch = std::sqrt(dot(d, d, k)) - rest_length_[begin + k];
       sum += stiffness_[begin + k] * stretch * stretch;
@@ -188,41 +199,41 @@ double Springs::energy(const ParticleField& x) const {
 
 void Springs::add_force(const ParticleField& x, double* force) const {
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d;
-    pairs_.gather(x, begin, count, d);
+    alignas(64) ParticlePairs::Vectors d;
+    pairs_.gather(x, begin, d);
     for (int k = 0; k < count; ++k) {
       const double c = -stiffness_[begin + k] * (1 - rest_length_[begin + k] / std::sqrt(dot(d, d, k)));
-      for (int r = 0; r < 3; ++r) d[r][k] *= c;
+      for (int r = 0; r < 3; ++r) d[3 * k + r] *= c;
     }
-    pairs_.scatter(d, begin, count, force);
+    pairs_.scatter(d, begin, force);
   });
 }
 
 void Springs::add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const {
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d, w;
-    pairs_.gather(x, begin, count, d);
-    pairs_.gather(u, begin, count, w);
+    alignas(64) ParticlePairs::Vectors d, w;
+    pairs_.gather(x, begin, d);
+    pairs_.gather(u, begin, w);
     for (int k = 0; k < count; ++k) {
       const Stiffness s = stiffness_of(stiffness_[begin + k], rest_length_[begin + k], dot(d, d, k));
       const double across = scale * s.a, along = scale * s.b * dot(d, w, k);
-      for (int r = 0; r < 3; ++r) w[r][k] = across * w[r][k] + along * d[r][k];
+      combine(across, w, along, d, k);
     }
-    pairs_.scatter(w, begin, count, out);
+    pairs_.scatter(w, begin, out);
   });
 }
 
 void Springs::add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const {
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d, w;
-    pairs_.gather(x, begin, count, d);
-    pairs_.gather(v, begin, count, w);
+    alignas(64) ParticlePairs::Vectors d, w;
+    pairs_.gather(x, begin, d);
+    pairs_.gather(v, begin, w);
     for (int k = 0; k < count; ++k) {
       const Stiffness s = stiffness_of(stiffness_[begin + k], rest_length_[begin + k], dot(d, d, k));
       const double across = -alpha * s.a, along = -s.a - alpha * s.b * dot(d, w, k);
-      for (int r = 0; r < 3; ++r) w[r][k] = across * w[r][k] + along * d[r][k];
+      combine(across, w, along, d, k);
     }
-    pairs_.scatter(w, begin, count, force);
+    pairs_.scatter(w, begin, force);
   });
 }
 
@@ -230,9 +241,9 @@ template <class StiffnessOf>
 void Springs::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix,
                          const StiffnessOf& block_of) const {
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d;
-    ParticlePairs::Numbers a, b;
-    pairs_.gather(x, begin, count, d);
+    alignas(64) ParticlePairs::Vectors d;
+    alignas(64) ParticlePairs::Numbers a, b;
+    pairs_.gather(x, begin, d);
     for (int k = 0; k < count; ++k) {
       const Stiffness s = block_of(stiffness_[begin + k], rest_length_[begin + k], dot(d, d, k));
       a[k] = s.a;
@@ -257,22 +268,22 @@ AxialDamping::AxialDamping(const std::vector<Spring>& springs, int free_count) :
 
 void AxialDamping::add_force(const ParticleField& x, const ParticleField& v, double* force) const {
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d, w;
-    pairs_.gather(x, begin, count, d);
-    pairs_.gather(v, begin, count, w);
+    alignas(64) ParticlePairs::Vectors d, w;
+    pairs_.gather(x, begin, d);
+    pairs_.gather(v, begin, w);
     for (int k = 0; k < count; ++k) {
       const double c = -damping_[begin + k] * dot(d, w, k) / dot(d, d, k);
-      for (int r = 0; r < 3; ++r) d[r][k] *= c;
+      for (int r = 0; r < 3; ++r) d[3 * k + r] *= c;
     }
-    pairs_.scatter(d, begin, count, force);
+    pairs_.scatter(d, begin, force);
   });
 }
 
 void AxialDamping::add_damping(const ParticleField& x, BlockSparseMatrix& damping) const {
   pairs_.for_each_batch([&](int begin, int count) {
-    ParticlePairs::Vectors d;
-    ParticlePairs::Numbers a, b;
-    pairs_.gather(x, begin, count, d);
+    alignas(64) ParticlePairs::Vectors d;
+    alignas(64) ParticlePairs::Numbers a, b;
+    pairs_.gather(x, begin, d);
     for (int k = 0; k < count; ++k) {
       a[k] = 0;
       b[k] = damping_[begin + k] / dot(d, d, k);
@@ -292,8 +303,10 @@ SceneTerms make_terms(const SpringNet& net, const std::vector<int>& number, int 
     if (s.damping > 0) damped.push_back(s);
   }
   SceneTerms terms;
-  if (!elastic.empty()) terms.elastic.push_back(std::make_unique<Springs>(elastic, free_count));
-  if (!damped.empty()) terms.damping.push_back(std::make_unique<AxialDamping>(damped, free_count));
+  if (!elastic.empty())
+    terms.elastic.push_back(std::make_unique<Springs>(ParticlePairs::in_runs(elastic), free_count));
+  if (!damped.empty())
+    terms.damping.push_back(std::make_unique<AxialDamping>(ParticlePairs::in_runs(damped), free_count));
   return terms;
 }
 

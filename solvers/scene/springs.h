@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "solvers/scene/spring_cloth.h"
@@ -15,22 +16,25 @@
 namespace springstab {
 
 /// Pairs of particles in a scene's own numbers: free ones first, `free_count` of them. Worked on in batches
-/// that stay in the first-level cache: gathered pair by pair, computed vector by vector, added pair by pair.
-/// Pairs with one first particle in a row load and store it once.
+/// that stay in the first-level cache. Pairs (i, j), (i + 1, j + 1), ... are a run, as a grid is full of
+/// them: their particles' vectors are read and added one after another, without looking up any.
 class ParticlePairs {
  public:
-  static constexpr int batch_size = 64;
-  /// One number per pair of a batch, and a vector per pair.
+  static constexpr int batch_size = 192;
+  /// One number per pair of a batch, and a vector per pair, three numbers after another.
   using Numbers = double[batch_size];
-  using Vectors = double[3][batch_size];
+  using Vectors = double[3 * batch_size];
   /// Of one pair, the block a I + b uuᵀ; u with a zero behind.
   struct Kept {
     double u[4], a, b;
   };
 
+  /// The springs in an order of long runs that keeps neighbours together.
+  static std::vector<Spring> in_runs(std::vector<Spring> springs);
+
   ParticlePairs(const std::vector<Spring>& springs, int free_count);
 
-  int size() const { return static_cast<int>(i_.size()); }
+  int size() const { return size_; }
   Couplings couplings() const;
   void bind(const BlockSparseMatrix& matrix);
 
@@ -41,30 +45,46 @@ class ParticlePairs {
       work(begin, std::min(batch_size, size() - begin));
   }
 
-  /// out = u_i - u_j for the pairs of a batch.
-  void gather(const ParticleField& u, int begin, int count, Vectors& out) const;
+  /// out = u_i - u_j for the pairs of the batch that begins there.
+  void gather(const ParticleField& u, int begin, Vectors& out) const;
   /// The same of free particles' vectors that are zero at the pinned ones.
-  void gather(const double* u, int begin, int count, Vectors& out) const;
+  void gather(const double* u, int begin, Vectors& out) const;
   /// out_i += u, out_j -= u at the free particles.
-  void scatter(const Vectors& u, int begin, int count, double* out) const;
+  void scatter(const Vectors& u, int begin, double* out) const;
   /// Blocks B = a I + b uuᵀ are kept until all are known, and then matrix += [[B, -B], [-B, B]] on the free
   /// particles, row by row of the matrix: to scatter them pair by pair misses the caches too often.
   void keep(const Numbers& a, const Numbers& b, const Vectors& u, int begin, int count) const;
   void add_kept_blocks(BlockSparseMatrix& matrix) const;
 
  private:
+  /// Within one batch; either the first particles of all its pairs are free or none, and so the second ones.
+  struct Run {
+    int i, j, count;
+  };
+
   template <class At>
-  void gather_from(const At& at, int begin, int count, Vectors& out) const;
+  void gather_from(const At& at, int begin, Vectors& out) const;
+  std::span<const Run> runs(int begin) const {
+    const int batch = begin / batch_size;
+    return {&runs_[run_start_[batch]], &runs_[run_start_[batch + 1]]};
+  }
 
-  /// Where the block that a pair of i stands for is in row i of a matrix; -1 if it lies above the diagonal or
-  /// beside a pinned particle.
-  long find_place(const BlockSparseMatrix& matrix, int i, int pair) const;
+  /// Where the block that a pair of i and another particle stands for is in row i of a matrix; -1 if it lies
+  /// above the diagonal or the other one is pinned.
+  static long find_place(const BlockSparseMatrix& matrix, int i, int other) {
+    return other < i ? matrix.find(i, other) : -1;
+  }
 
-  std::vector<int> i_, j_;
-  int free_count_;
+  int size_, free_count_;
+  std::vector<Run> runs_;
+  std::vector<int> run_start_;  // of each batch
+  /// A pair of a free particle.
+  struct Incident {
+    int pair, other;
+  };
   const BlockSparseMatrix* bound_ = nullptr;
-  std::vector<long> incident_start_;  // the pairs of each free particle, ascending, in compressed rows
-  std::vector<int> incident_;
+  std::vector<long> incident_start_;  // the pairs of each free particle, in compressed rows
+  std::vector<Incident> incident_;
   std::vector<long> place_;  // of each incident pair in the bound matrix
   mutable std::vector<Kept> kept_;
 };

@@ -198,7 +198,8 @@ void write_runs(const std::string& path, const ContestResult& result) {
   OutputFile file(path);
   std::ostream& out = file.stream();
   out << "contestant,library,setting,limit,outcome,compared,error_position,error_velocity,error_trajectory,"
-         "error_energy,reference_error,median_seconds,least_seconds,most_seconds,steps,force_evaluations,"
+         "error_energy,reference_error,reference_check,median_seconds,least_seconds,most_seconds,steps,force_"
+         "evaluations,"
          "hessian_assemblies,block_products,cg_iterations,equivalents\n";
   for (const ContestSeries& s : result.series)
     for (const ContestRun& run : s.runs) {
@@ -211,9 +212,11 @@ void write_runs(const std::string& path, const ContestResult& result) {
         out << ",,,";
       const auto [least, most] = std::ranges::minmax(run.seconds);
       const Counts& c = run.counts;
-      out << ',' << result.reference.error.trajectory << ',' << run.median_seconds() << ',' << least << ','
-          << most << ',' << run.steps << ',' << c.force_evaluations << ',' << c.hessian_assemblies << ','
-          << c.block_products << ',' << c.cg_iterations << ',' << run.equivalents() << '\n';
+      out << ',' << result.reference.error.trajectory << ',';
+      if (const auto& check = result.reference.check) out << check->trajectory;
+      out << ',' << run.median_seconds() << ',' << least << ',' << most << ',' << run.steps << ','
+          << c.force_evaluations << ',' << c.hessian_assemblies << ',' << c.block_products << ','
+          << c.cg_iterations << ',' << run.equivalents() << '\n';
     }
   file.commit();
 }

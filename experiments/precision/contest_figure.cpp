@@ -90,6 +90,18 @@ std::string cheapest_table(const std::vector<ContestResult>& results) {
   return table;
 }
 
+std::string reference_table(const std::vector<ContestResult>& results) {
+  std::string table =
+      text("| scene | reference | its own error | distance of %s |\n|---|---|---|---|\n", reference_check);
+  for (const ContestResult& result : results) {
+    const Reference& reference = result.reference;
+    table += "| " + result.title + " | " + reference.method + text(" | %.2g | ", reference.error.trajectory) +
+             (reference.check ? text("%.2g", reference.check->trajectory) : "not there, or not finished") +
+             " |\n";
+  }
+  return table;
+}
+
 std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const std::string& base,
                                         const std::string& plots) {
   std::vector<std::string> files;

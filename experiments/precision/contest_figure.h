@@ -15,6 +15,9 @@ inline constexpr double wanted_errors[] = {0.1, 0.01, 0.001, 1e-6};
 /// CPU milliseconds; Markdown.
 std::string cheapest_table(const std::vector<ContestResult>& results);
 
+/// Per contest the error of its reference, as published and as the third integrator has it; Markdown.
+std::string reference_table(const std::vector<ContestResult>& results);
+
 /// Writes BASE.csv (or BASE_1.csv, BASE_2.csv ...), the points for gnuplot and the picture: a row of panels
 /// per contest, error against CPU seconds and against force evaluation equivalents. Returns the paths.
 std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const std::string& base,

@@ -82,15 +82,20 @@ std::vector<double> peer_tolerances() {
   return tolerances;
 }
 
-std::vector<Contestant> peer_contestants(Problem& problem) {
-  Contestant gsl;
-  gsl.name = "GSL rkf45";
-  gsl.library = true;
-  gsl.settings = peer_tolerances();
-  gsl.attempt = [&problem](double tolerance, double time_limit) {
-    return attempt_gsl(problem, tolerance, time_limit);
+Contestant library_contestant(const std::string& name, Problem& problem,
+                              Attempt (*attempt)(Problem&, double, double)) {
+  Contestant contestant;
+  contestant.name = name;
+  contestant.library = true;
+  contestant.settings = peer_tolerances();
+  contestant.attempt = [&problem, attempt](double tolerance, double time_limit) {
+    return attempt(problem, tolerance, time_limit);
   };
-  std::vector<Contestant> peers{std::move(gsl)};
+  return contestant;
+}
+
+std::vector<Contestant> peer_contestants(Problem& problem) {
+  std::vector<Contestant> peers{library_contestant("GSL rkf45", problem, attempt_gsl)};
 #ifdef SPRINGSTAB_ODEINT
   peers.push_back(odeint_contestant(problem));
 #endif

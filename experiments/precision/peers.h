@@ -45,7 +45,15 @@ class FirstOrderProblem {
   Vector x_, v_, a_;
 };
 
+/// A library's solver at a relative tolerance, within a time limit.
+Contestant library_contestant(const std::string& name, Problem& problem,
+                              Attempt (*attempt)(Problem&, double tolerance, double time_limit));
+
 Contestant odeint_contestant(Problem& problem);
 std::vector<Contestant> sundials_contestants(Problem& problem);
+
+/// Boost.odeint's extrapolated midpoint rule (Bulirsch and Stoer), which shares no formula with Runge-Kutta
+/// pairs: what references are checked with.
+Attempt attempt_bulirsch_stoer(Problem& problem, double tolerance, double time_limit);
 
 }  // namespace springstab

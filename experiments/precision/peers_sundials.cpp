@@ -113,22 +113,11 @@ Attempt attempt_arkode(Problem& problem, double tolerance, double time_limit) {
   return equations.finish(good, steps);
 }
 
-Contestant contestant(const char* name, Problem& problem, Attempt (*attempt)(Problem&, double, double)) {
-  Contestant contestant;
-  contestant.name = name;
-  contestant.library = true;
-  contestant.settings = peer_tolerances();
-  contestant.attempt = [&problem, attempt](double tolerance, double time_limit) {
-    return attempt(problem, tolerance, time_limit);
-  };
-  return contestant;
-}
-
 }  // namespace
 
 std::vector<Contestant> sundials_contestants(Problem& problem) {
-  return {contestant("CVODE BDF GMRES", problem, attempt_cvode),
-          contestant("ARKODE explicit", problem, attempt_arkode)};
+  return {library_contestant("CVODE BDF GMRES", problem, attempt_cvode),
+          library_contestant("ARKODE explicit", problem, attempt_arkode)};
 }
 
 }  // namespace springstab

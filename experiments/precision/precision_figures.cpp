@@ -28,10 +28,13 @@ constexpr Row stiff(double time_limit) {
   return {[](const CommonOptions& common) { return scene(stiffer, common); }, time_limit};
 }
 
-// What the figure claims: every reference is good for a thousandth at least, and every contest has a winner.
+// What the figure claims: every reference is good for a thousandth at least, a third integrator is farther
+// away than published by its own rounding at most, and every contest has a winner.
 bool holds(const std::vector<ContestResult>& results) {
   return std::ranges::all_of(results, [](const ContestResult& r) {
-    return 100 * r.reference.error.trajectory <= 1e-3 && cheapest(r, 0.1, false).run;
+    const double published = r.reference.error.trajectory;
+    const bool honest = !r.reference.check || r.reference.check->trajectory <= published + 1e-14;
+    return honest && 100 * published <= 1e-3 && cheapest(r, 0.1, false).run;
   });
 }
 
@@ -48,7 +51,7 @@ Json draw_rows(const std::vector<Row>& rows, const std::string& base, const Comm
   }
   std::vector<std::string> files = write_contests(results, base, options.plots);
   OutputFile table(base + "_cheapest.md");
-  table.stream() << cheapest_table(results);
+  table.stream() << cheapest_table(results) << '\n' << reference_table(results);
   table.commit();
   files.push_back(base + "_cheapest.md");
   return {{"files", files},

@@ -13,13 +13,15 @@
 #include "analysis/adaptive_integrator.h"
 #include "analysis/linear_motion.h"
 #include "experiments/output.h"
+#include "experiments/precision/peers.h"
 #include "experiments/precision/scales.h"
 
 namespace springstab {
 namespace {
 
 constexpr Eigen::Index largest_decomposed = 2000;  // unknowns
-constexpr double loose = 1e-10, tight = 1e-12;
+constexpr double loose = 1e-10, tight = 1e-12, third = 1e-13;
+constexpr double check_seconds = 120;  // CPU
 
 bool has_modes(Problem& problem) {
   return problem.is_linear() && problem.damping().kind != DampingModel::Kind::general &&
@@ -45,6 +47,14 @@ Trajectory integrated(Problem& problem, double tolerance) {
   return std::move(result.at);
 }
 
+std::optional<Errors> check(Problem& problem, const Trajectory& reference) {
+#ifdef SPRINGSTAB_ODEINT
+  const Attempt attempt = attempt_bulirsch_stoer(problem, third, check_seconds);
+  if (attempt.outcome == Outcome::finished) return errors_of(problem.system(), attempt.trajectory, reference);
+#endif
+  return std::nullopt;
+}
+
 Reference compute(Problem& problem) {
   const bool modes = has_modes(problem);
   Reference reference;
@@ -58,6 +68,7 @@ Reference compute(Problem& problem) {
   for (double* e : {&reference.error.position, &reference.error.velocity, &reference.error.trajectory,
                     &reference.error.energy})
     *e = std::max(*e, rounding);
+  reference.check = check(problem, reference.trajectory);
   return reference;
 }
 
@@ -76,7 +87,7 @@ class Fnv1a {
 };
 
 // Of one kind of machine only, which a cache is anyway.
-constexpr char magic[] = "springstab reference 2\n";
+constexpr char magic[] = "springstab reference 3\n";
 
 void write(const std::string& path, const Reference& reference) {
   OutputFile file(path);
@@ -86,6 +97,10 @@ void write(const std::string& path, const Reference& reference) {
   };
   put(magic, sizeof magic);
   put(&reference.error, sizeof reference.error);
+  const bool checked = reference.check.has_value();
+  const Errors check = reference.check.value_or(Errors());
+  put(&checked, sizeof checked);
+  put(&check, sizeof check);
   for (const State<Vector>& s : reference.trajectory)
     for (const Vector* u : {&s.x, &s.v}) put(u->data(), sizeof(double) * static_cast<std::size_t>(u->size()));
   file.commit();
@@ -99,7 +114,12 @@ bool read(const std::string& path, Eigen::Index size, Reference& reference) {
   };
   char found[sizeof magic];
   if (!get(found, sizeof found) || std::memcmp(found, magic, sizeof magic) != 0) return false;
-  if (!get(&reference.error, sizeof reference.error)) return false;
+  bool checked = false;
+  Errors check;
+  if (!get(&reference.error, sizeof reference.error) || !get(&checked, sizeof checked) ||
+      !get(&check, sizeof check))
+    return false;
+  if (checked) reference.check = check;
   reference.trajectory.resize(trajectory_samples + 1);
   for (State<Vector>& s : reference.trajectory)
     for (Vector* u : {&s.x, &s.v}) {

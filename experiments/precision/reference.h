@@ -1,6 +1,7 @@
 // The motion that errors are measured against, and how far off it may be itself.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,15 +29,19 @@ Errors errors_of(System& system, const Trajectory& run, const Trajectory& refere
 
 struct Reference {
   Trajectory trajectory;
-  Errors error;        // its own: the difference of two computations
-  std::string method;  // how it was computed, for people
+  Errors error;                 // its own: the difference of two computations
+  std::string method;           // how it was computed, for people
+  std::optional<Errors> check;  // how far a third, unrelated integrator is away; nothing if it did not finish
 };
+
+inline constexpr char reference_check[] = "Bulirsch-Stoer, tolerance 1e-13";
 
 /// Linear systems with Rayleigh damping or none, of up to 2000 unknowns, move as their modes do, and the
 /// error is the difference to the same in another order of the unknowns. Everything else is integrated by
-/// rk8pd with the tolerances 1e-10 and 1e-12, and the error is the difference of the two. Kept in the folder
-/// `cache` (empty: nowhere) under the problem's fingerprint. With the problem's own damping, designed or not.
-/// Throws std::runtime_error where the integration does not finish.
+/// rk8pd with the tolerances 1e-10 and 1e-12, and the error is the difference of the two. Checked by
+/// Boost.odeint's Bulirsch-Stoer where that was there when this was built, and gets through in two
+/// CPU-minutes. Kept in the folder `cache` (empty: nowhere) under the problem's fingerprint. With the
+/// problem's own damping, designed or not. Throws std::runtime_error where the integration does not finish.
 Reference reference_motion(Problem& problem, const std::string& cache);
 
 /// A hash of what the problem does: its start, duration, masses, energies and accelerations there and at

@@ -72,7 +72,11 @@ Json json_of(const ContestResult& result, const Json& files) {
           {"k0", number(result.k0)},
           {"set_up_seconds", number(result.set_up_seconds)},
           {"damping", result.designed ? "designed" : "own"},
-          {"reference", {{"method", result.reference.method}, {"error", json_of(result.reference.error)}}},
+          {"reference",
+           {{"method", result.reference.method},
+            {"error", json_of(result.reference.error)},
+            {"check_method", reference_check},
+            {"check", result.reference.check ? json_of(*result.reference.check) : Json()}}},
           {"contestants", list},
           {"provenance", provenance()},
           {"files", files}};
@@ -101,13 +105,11 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
     std::cout << json_of(result, files).dump(2) << '\n';
     return done;
   }
-  std::cout << text("%s: %ld unknowns, %g s; k0 = %.10g 1/s² (%.3g CPU-seconds)\n", result.title.c_str(),
+  std::cout << text("%s: %ld unknowns, %g s; k0 = %.10g 1/s² (%.3g CPU-seconds)\n\n", result.title.c_str(),
                     static_cast<long>(problem.system().size()), result.duration, result.k0,
                     result.set_up_seconds)
-            << text("reference: %s; its own relative error %.2g (trajectory), %.2g (end position)\n\n",
-                    result.reference.method.c_str(), result.reference.error.trajectory,
-                    result.reference.error.position)
             << cheapest_table({result}) << '\n'
+            << reference_table({result}) << '\n'
             << provenance() << '\n';
   return done;
 }

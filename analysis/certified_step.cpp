@@ -10,7 +10,8 @@
 namespace springstab {
 namespace {
 
-constexpr double loose = 1e-3;  // of eigenvectors that only guide the search
+constexpr double loose = 1e-3;       // of eigenvectors that only guide the search
+constexpr double negligible = 1e-9;  // h√k0 that damping of rounding's size allows
 
 }  // namespace
 
@@ -67,10 +68,11 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
   if (outline().empty()) return std::nullopt;
   std::vector<ModePoint> modes;
   for (const ModePoint& p : outline_) modes.push_back(stiffening(p));
+  const double shortest = modes.front().k > 0 ? negligible / std::sqrt(modes.front().k) : 0;
   double margin = 1e-4;
   for (int round = 0; round < 60 && margin < 0.5; ++round) {
     PolygonFit fit = inscribed_polygons(method).fit(modes);
-    if (!(fit.h > 0) || fit.edges.empty() || !std::isfinite(fit.h)) return std::nullopt;
+    if (!(fit.h > shortest) || fit.edges.empty() || !std::isfinite(fit.h)) return std::nullopt;
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();

@@ -97,6 +97,7 @@ MethodLimits GeneralDamping::compute(std::string_view method) {
   } else {
     add_certified(method, limits);
     add_estimate(method, limits);
+    add_lyapunov(method, limits);
   }
   return limits;
 }
@@ -111,6 +112,7 @@ void GeneralDamping::set_certified(std::optional<double> h, Proof proof, MethodL
   limits.h_certified = h;
   if (h) {
     limits.proof = proof;
+    limits.unproved = {};
   } else {
     limits.unproved = s_.size() > DefinitenessProof::factorization_limit
                           ? "there are too many unknowns to factorize a matrix"
@@ -169,6 +171,16 @@ void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits)
   limits.source = LimitSource::estimate;
   limits.recommended = least;
   if (limits.h_certified) limits.h_certified = std::min(*limits.h_certified, *limits.h_max);
+}
+
+// Where the polygons prove much less than what is true, and there are few unknowns.
+void GeneralDamping::add_lyapunov(std::string_view method, MethodLimits& limits) {
+  if (!proofs_ || !limits.h_max || s_.size() > LyapunovSteps::unknowns_limit) return;
+  const double known = limits.h_certified.value_or(0);
+  if (known > 0.999 * *limits.h_max) return;
+  if (!lyapunov_) lyapunov_.emplace(s_);
+  if (const std::optional<double> h = lyapunov_->certified(method, known, *limits.h_max))
+    set_certified(h, Proof::lyapunov, limits);
 }
 
 }  // namespace springstab

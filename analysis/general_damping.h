@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/certified_step.h"
+#include "analysis/lyapunov_step.h"
 #include "analysis/method_limits.h"
 #include "analysis/numerical_range.h"
 
@@ -43,6 +44,7 @@ class GeneralDamping {
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
   void add_certified(std::string_view method, MethodLimits& limits);
   void add_estimate(std::string_view method, MethodLimits& limits);
+  void add_lyapunov(std::string_view method, MethodLimits& limits);
 
   const StiffestMode& k0_;
   DampingModel damping_;
@@ -51,6 +53,7 @@ class GeneralDamping {
   const StructuralMatrices& s_;
   std::vector<std::optional<std::vector<std::complex<double>>>> spectra_;  // of each stiffening, when needed
   CertifiedSteps certified_;
+  std::optional<LyapunovSteps> lyapunov_;  // when needed
   std::vector<std::pair<const StabilityRegion*, MethodLimits>> known_;
 };
 

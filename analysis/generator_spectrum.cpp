@@ -25,13 +25,14 @@ bool has_stability_function(std::string_view method) {
 std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s) {
   const Eigen::Index n = s.size();
   if (n > generator_limit) return std::nullopt;
-  const Eigen::MatrixXd stiffness = as_dense(scaled_stiffness(s));
+  const Eigen::MatrixXd stiffness = symmetric_part(as_dense(scaled_stiffness(s)));
   const double rate = std::sqrt(stiffness.norm());  // makes time dimensionless
   if (!(rate > 0)) return std::nullopt;
   Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   generator.topRightCorner(n, n).setIdentity();
   generator.bottomLeftCorner(n, n) = -stiffness / (rate * rate);
-  if (s.has_damping()) generator.bottomRightCorner(n, n) = -as_dense(mass_scaled(s.damping, s.mass)) / rate;
+  if (s.has_damping())
+    generator.bottomRightCorner(n, n) = -symmetric_part(as_dense(mass_scaled(s.damping, s.mass))) / rate;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator, false);
   if (solver.info() != Eigen::Success) return std::nullopt;
   std::vector<std::complex<double>> modes;

@@ -44,7 +44,8 @@ enum class Proof {
   k0_bound,          // every mode's limit up to the proved bound on k0
   quadrant,          // every d, k >= 0 is stable
   matrix_condition,  // the method's own condition on hD' + h²K', factorized
-  polygon            // W lies in a convex polygon of the region, a factorization an edge
+  polygon,           // W lies in a convex polygon of the region, a factorization an edge
+  lyapunov           // a norm that falls at every step; of this step alone
 };
 
 /// Steps in seconds. Absent where there is none or it is not known; ∞ where nothing limits.

@@ -16,8 +16,8 @@ NumericalRange::NumericalRange(const StructuralMatrices& s, ArpackOptions option
     damping_ = {size_, [](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.setZero(in.size()); }};
   }
   if (size_ > dense_limit) return;
-  dense_damping_ = as_dense(damping_);
-  dense_stiffness_ = as_dense(stiffness_);
+  dense_damping_ = symmetric_part(as_dense(damping_));
+  dense_stiffness_ = symmetric_part(as_dense(stiffness_));
 }
 
 ExtremePoint NumericalRange::point(const Eigen::VectorXd& v) const {

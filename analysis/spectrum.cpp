@@ -30,7 +30,7 @@ double largest_row_sum(const SparseMatrix& a) {
 }
 
 StiffestMode dense_spectrum(const LinearOperator& s) {
-  const Eigen::MatrixXd matrix = as_dense(s);
+  const Eigen::MatrixXd matrix = symmetric_part(as_dense(s));
   if (!matrix.allFinite())
     throw std::invalid_argument("the mass-scaled stiffness is not finite, expected finite matrices");
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
@@ -82,8 +82,10 @@ Eigen::MatrixXd as_dense(const LinearOperator& a) {
     a.apply(Eigen::VectorXd::Unit(a.size, j), column);
     matrix.col(j) = column;
   }
-  return 0.5 * (matrix + matrix.transpose());
+  return matrix;
 }
+
+Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a) { return 0.5 * (a + a.transpose()); }
 
 bool is_below(const StructuralMatrices& s, double sigma) {
   return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);

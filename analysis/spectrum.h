@@ -39,8 +39,11 @@ LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass);
 /// S as an operator, which may refer to `s`.
 LinearOperator scaled_stiffness(const StructuralMatrices& s);
 
-/// The matrix of a symmetric operator, column by column; its symmetric part.
+/// The matrix of an operator, column by column.
 Eigen::MatrixXd as_dense(const LinearOperator& a);
+
+/// (A + Aᵀ)/2.
+Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a);
 
 /// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Above 150 000 unknowns nothing is factorized: the
 /// bound is Gershgorin's and definiteness is not tested.

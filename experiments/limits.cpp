@@ -105,6 +105,8 @@ const char* name(Proof proof) {
       return "matrix condition";
     case Proof::polygon:
       return "polygon";
+    case Proof::lyapunov:
+      return "Lyapunov";
     case Proof::none:
       break;
   }

@@ -9,8 +9,8 @@
 #include "analysis/power_iteration.h"
 #include "analysis/power_law.h"
 #include "analysis/spectrum.h"
-#include "experiments/complexity_studies.h"
-#include "experiments/k0_watch.h"
+#include "experiments/complexity/complexity_studies.h"
+#include "experiments/complexity/k0_watch.h"
 #include "solvers/stepper.h"
 
 using namespace springstab;

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "analysis/step_limits.h"
-#include "experiments/divergence_cloth.h"
-#include "experiments/divergence_examples.h"
+#include "experiments/divergence/cloth.h"
+#include "experiments/divergence/examples.h"
 
 using namespace springstab;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/drape.h"
+#include "experiments/complexity/drape.h"
 
 namespace springstab {
 namespace {

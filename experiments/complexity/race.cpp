@@ -1,4 +1,4 @@
-#include "experiments/race.h"
+#include "experiments/complexity/race.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "experiments/drape.h"
+#include "experiments/complexity/drape.h"
 #include "experiments/experiments.h"
 #include "solvers/state.h"
 #include "solvers/system.h"

@@ -1,4 +1,4 @@
-#include "experiments/divergence_examples.h"
+#include "experiments/divergence/examples.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

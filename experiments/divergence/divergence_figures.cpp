@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "experiments/divergence.h"
+#include "experiments/divergence/divergence.h"
 #include "experiments/figure_list.h"
 #include "experiments/gnuplot.h"
 #include "experiments/region.h"

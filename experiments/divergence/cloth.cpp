@@ -1,4 +1,4 @@
-#include "experiments/divergence_cloth.h"
+#include "experiments/divergence/cloth.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "experiments/complexity_studies.h"
+#include "experiments/complexity/complexity_studies.h"
 
 #include <algorithm>
 #include <cmath>

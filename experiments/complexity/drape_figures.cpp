@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/complexity/k0_watch.h"
 #include "experiments/figure_list.h"
 #include "experiments/gnuplot.h"
-#include "experiments/k0_watch.h"
 
 namespace springstab {
 namespace {

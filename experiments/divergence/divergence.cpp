@@ -1,11 +1,11 @@
 // `springstab divergence`: stable regions and limits against what simulations do.
-#include "experiments/divergence.h"
+#include "experiments/divergence/divergence.h"
 
 #include <algorithm>
 #include <iostream>
 
-#include "experiments/divergence_cloth.h"
-#include "experiments/divergence_examples.h"
+#include "experiments/divergence/cloth.h"
+#include "experiments/divergence/examples.h"
 #include "experiments/experiments.h"
 #include "experiments/output.h"
 #include "experiments/region.h"

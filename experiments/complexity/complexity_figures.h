@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/complexity_studies.h"
+#include "experiments/complexity/complexity_studies.h"
 
 namespace springstab {
 

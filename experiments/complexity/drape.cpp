@@ -1,4 +1,4 @@
-#include "experiments/drape.h"
+#include "experiments/complexity/drape.h"
 
 namespace springstab {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/power_law.h"
-#include "experiments/race.h"
+#include "experiments/complexity/race.h"
 
 namespace springstab {
 

@@ -1,4 +1,4 @@
-#include "experiments/k0_watch.h"
+#include "experiments/complexity/k0_watch.h"
 
 #include <algorithm>
 #include <stdexcept>

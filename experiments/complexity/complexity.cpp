@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "experiments/complexity_figures.h"
+#include "experiments/complexity/complexity_figures.h"
 #include "experiments/experiments.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"

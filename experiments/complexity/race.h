@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/spectrum.h"
-#include "experiments/drape.h"
+#include "experiments/complexity/drape.h"
 #include "experiments/experiments.h"
 #include "experiments/measured_run.h"
 #include "solvers/linear/conjugate_gradient.h"

@@ -1,4 +1,4 @@
-#include "experiments/complexity_figures.h"
+#include "experiments/complexity/complexity_figures.h"
 
 #include "experiments/figure_list.h"
 #include "experiments/gnuplot.h"

@@ -20,24 +20,57 @@ bool has_stability_function(std::string_view method) {
   return (a * c - c * a).norm() <= 1e-12 * a.norm();
 }
 
+/// K', D' and the generator in a time that is dimensionless.
+struct Generator {
+  double rate = 0;  // [1/s]
+  Eigen::MatrixXd stiffness, damping, matrix;
+};
+
+std::optional<Generator> generator_of(const StructuralMatrices& s) {
+  const Eigen::Index n = s.size();
+  if (n > generator_limit) return std::nullopt;
+  Generator g;
+  g.stiffness = symmetric_part(as_dense(scaled_stiffness(s)));
+  g.rate = std::sqrt(g.stiffness.norm());
+  if (!(g.rate > 0)) return std::nullopt;
+  g.stiffness /= g.rate * g.rate;
+  g.damping = Eigen::MatrixXd::Zero(n, n);
+  if (s.has_damping()) g.damping = symmetric_part(as_dense(mass_scaled(s.damping, s.mass))) / g.rate;
+  g.matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  g.matrix.topRightCorner(n, n).setIdentity();
+  g.matrix.bottomLeftCorner(n, n) = -g.stiffness;
+  g.matrix.bottomRightCorner(n, n) = -g.damping;
+  return g;
+}
+
 }  // namespace
 
 std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s) {
-  const Eigen::Index n = s.size();
-  if (n > generator_limit) return std::nullopt;
-  const Eigen::MatrixXd stiffness = symmetric_part(as_dense(scaled_stiffness(s)));
-  const double rate = std::sqrt(stiffness.norm());  // makes time dimensionless
-  if (!(rate > 0)) return std::nullopt;
-  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  generator.topRightCorner(n, n).setIdentity();
-  generator.bottomLeftCorner(n, n) = -stiffness / (rate * rate);
-  if (s.has_damping())
-    generator.bottomRightCorner(n, n) = -symmetric_part(as_dense(mass_scaled(s.damping, s.mass))) / rate;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator, false);
+  const std::optional<Generator> generator = generator_of(s);
+  if (!generator) return std::nullopt;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix, false);
   if (solver.info() != Eigen::Success) return std::nullopt;
   std::vector<std::complex<double>> modes;
   for (const std::complex<double> mu : solver.eigenvalues())
-    if (std::abs(mu) > rigid) modes.push_back(rate * mu);
+    if (std::abs(mu) > rigid) modes.push_back(generator->rate * mu);
+  return modes;
+}
+
+std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s) {
+  const std::optional<Generator> generator = generator_of(s);
+  if (!generator) return std::nullopt;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix);
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  const Eigen::MatrixXcd vectors = solver.eigenvectors().topRows(s.size());
+  const double rate = generator->rate;
+  std::vector<DampedMode> modes;
+  for (Eigen::Index j = 0; j < vectors.cols(); ++j) {
+    const std::complex<double> mu = solver.eigenvalues()[j];
+    if (!(std::abs(mu) > rigid)) continue;
+    const Eigen::VectorXcd v = vectors.col(j).normalized();
+    modes.push_back({rate * mu, rate * v.dot(generator->damping * v).real(),
+                     rate * rate * v.dot(generator->stiffness * v).real()});
+  }
   return modes;
 }
 

@@ -17,6 +17,15 @@ inline constexpr Eigen::Index generator_limit = 400;
 /// where that did not converge. Those below 1e-6 of √‖K'‖ are left out: rigid motions, but for rounding.
 std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s);
 
+/// What an eigenpair (μ, v) sees of the matrices, v*v = 1 in the mass inner product: μ² + dμ + k = 0.
+struct DampedMode {
+  std::complex<double> mu;  // [1/s]
+  double d, k;              // v*D'v [1/s], v*K'v [1/s²]
+};
+
+/// The eigenpairs of those eigenvalues.
+std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s);
+
 /// The largest H such that every 0 < h < H keeps all these modes stable or neutral, for a method with a
 /// stability function, whose eigenvalues on them are R(hμ). An estimate: the eigenvalues carry rounding.
 /// Nothing for other methods, and where it hinges on a real part of rounding's size.

@@ -3,9 +3,12 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
+#include "analysis/generator_spectrum.h"
+#include "analysis/numerical_range.h"
 #include "analysis/step_limits.h"
 #include "experiments/divergence/cloth.h"
 #include "experiments/divergence/examples.h"
+#include "tests/random_nets.h"
 
 using namespace springstab;
 
@@ -97,6 +100,28 @@ BOOST_AUTO_TEST_CASE(a_linearized_pendulum_explodes_where_symplectic_euler_swing
   BOOST_TEST(p.symplectic_largest_energy < 1.1);
   BOOST_REQUIRE(p.samples.size() > 10u);
   for (const Pendulum::Sample& sample : p.samples) BOOST_TEST(std::isfinite(sample.linearized));
+}
+
+// The quadratic of what an eigenpair sees has its eigenvalue as a root, and W holds it.
+BOOST_AUTO_TEST_CASE(eigenpairs_are_roots_of_what_they_see_and_lie_in_the_numerical_range) {
+  test::RandomNets nets(9);
+  for (int i = 0; i < 10; ++i) {
+    const StructuralMatrices s = test::matrices(nets.net(true), 0.1);
+    const std::vector<DampedMode> modes = damped_modes(s).value();
+    const std::vector<std::complex<double>> spectrum = generator_spectrum(s).value();
+    BOOST_REQUIRE_EQUAL(modes.size(), spectrum.size());
+    const NumericalRange range(s);
+    double fastest = 0;
+    for (const std::complex<double> mu : spectrum) fastest = std::max(fastest, std::abs(mu));
+    for (const double angle : {0.0, 0.7, 1.5, 2.2, 3.0, 4.1, 5.0, 5.9}) {
+      const double a = std::cos(angle) * fastest, b = std::sin(angle);
+      const ExtremePoint farthest = range.farthest(a, b).value();
+      for (const DampedMode& m : modes) {
+        BOOST_TEST(a * m.d + b * m.k <= a * farthest.d + b * farthest.k + 1e-9 * fastest * fastest);
+        BOOST_TEST(std::abs(m.mu * m.mu + m.d * m.mu + m.k) <= 1e-9 * fastest * fastest);
+      }
+    }
+  }
 }
 
 BOOST_AUTO_TEST_SUITE_END()

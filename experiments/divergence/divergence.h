@@ -2,6 +2,7 @@
 #pragma once
 
 #include "experiments/experiments.h"
+#include "experiments/figure_list.h"
 #include "experiments/output.h"
 
 namespace springstab {
@@ -12,5 +13,8 @@ namespace springstab {
 /// row per scene, damping and method), switching, pendulum. Throws InputError for bad options and unusable
 /// scenes.
 Json divergence(const CommonOptions& common, const DivergenceOptions& options);
+
+/// The figure of a damped net's eigenpairs and numerical range in the regions of two methods.
+Figure divergence_map();
 
 }  // namespace springstab

@@ -57,7 +57,7 @@ Json draw_divergence(const std::string& base, const CommonOptions& common, const
 }  // namespace
 
 std::vector<Figure> divergence_figures() {
-  return {{.file = "divergence", .name = "divergence", .draw = draw_divergence}};
+  return {{.file = "divergence", .name = "divergence", .draw = draw_divergence}, divergence_map()};
 }
 
 }  // namespace springstab

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/general_damping.h"
+#include "analysis/transient_growth.h"
 #include "experiments/experiments.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"
@@ -13,10 +14,13 @@
 namespace springstab {
 namespace {
 
+constexpr double told_growth = 2;
+
 struct Row {
   std::string_view method;
   MethodLimits limits;                 // all unknown if k0 is not
   std::optional<double> h_every_pose;  // proved for every pose [s]
+  std::optional<double> growth;        // a lower bound of the largest ‖Aⁿ‖ at the step to use
 };
 
 const char* name(LimitStatus status) {
@@ -151,10 +155,31 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
                     text("use (F=%g)", safety).c_str(), "with fitted damping: h_max, alpha");
 }
 
+// The modes' own damping, or that fitted to the step.
+std::optional<double> growth_at_recommended(std::string_view method, const MethodLimits& limits,
+                                            const StiffestMode& k0, const DampingModel& damping) {
+  if (!limits.recommended || damping.kind == DampingModel::Kind::general) return std::nullopt;
+  const double h = *limits.recommended;
+  const double alpha = damping.kind == DampingModel::Kind::designed
+                           ? designed_alpha(stability_region(method), h, damping.d0)
+                           : damping.alpha;
+  return transient_growth(method, {k0.smallest.value_or(0), k0.value, damping.d0, alpha}, h);
+}
+
+// Stable is not decaying from the start.
+void print_growth(const std::vector<Row>& rows) {
+  std::string list;
+  for (const Row& row : rows)
+    if (row.growth.value_or(1) >= told_growth)
+      list += (list.empty() ? "" : ", ") + std::string(row.method) + text(" %.3g", *row.growth);
+  if (!list.empty())
+    std::cout << "\nstable at the step to use, but √energy may first grow by a factor of: " << list << '\n';
+}
+
 // Why nothing is proved, where the status does not say it.
 void print_reasons(const std::vector<Row>& rows) {
   std::map<std::string_view, std::string> methods;
-  for (const auto& [method, limits, every_pose] : rows)
+  for (const auto& [method, limits, every_pose, growth] : rows)
     if (!limits.h_certified && limits.status != LimitStatus::none) {
       std::string& list = methods[limits.unproved];
       list += (list.empty() ? "" : ", ") + std::string(method);
@@ -197,7 +222,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (limits.status == LimitStatus::unlimited) limits.recommended = options.max_step;
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
-    rows.push_back({info.name, limits, h_every_pose});
+    rows.push_back({info.name, limits, h_every_pose, growth_at_recommended(info.name, limits, k0, damping)});
   }
 
   if (common.json) {
@@ -205,6 +230,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     for (const Row& row : rows) {
       list.push_back(limits_json(row.method, row.limits, damping.d0));
       list.back()["h_every_pose"] = number(row.h_every_pose);
+      list.back()["transient_growth"] = number(row.growth);
     }
     std::cout << Json{{"degrees_of_freedom", structure.size()},
                       {"condensed", structure.condensed},
@@ -218,6 +244,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   } else if (k0.converged) {
     print(structure, k0, damping, options.safety);
     for (const Row& row : rows) print(row.method, row.limits);
+    print_growth(rows);
     print_reasons(rows);
     for (const Row& row : rows)
       if (row.h_every_pose)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/general_damping.h"
+#include "analysis/transient_growth.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"
 
@@ -19,9 +20,9 @@ constexpr double hopeless = 1e-6;  // of the first step
 
 }  // namespace
 
-EnergyWatch tightened(EnergyWatch watch) {
-  watch.slack = tight_watch;
-  watch.largest_gain = tight_gain;
+EnergyWatch tightened(EnergyWatch watch, double growth) {
+  watch.slack = std::clamp(growth, tight_watch, watch.slack);
+  watch.largest_gain = tight_gain;  // a false alarm costs a shorter step, a late one the shape of the cloth
   return watch;
 }
 
@@ -89,13 +90,21 @@ std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {
   const std::optional<double> step =
       options_.step ? options_.step : recommended(k0, subject_.initial_state(common_.seed));
   if (!step) return std::nullopt;
+  k0_ = k0.value;
   least_step_ = hopeless * std::min(*step, options_.duration);
   return plan(*step, options_.duration);
 }
 
+// Of the planned steps at the start. Not of what the safety factor allows for: there it has no bound.
+double StepChooser::growth() {
+  const DampingModel damping = subject_.damping();
+  if (damping.kind == DampingModel::Kind::general) return 1;
+  return transient_growth(options_.method, {.k_max = k0_, .d0 = damping.d0, .alpha = damping.alpha}, h_);
+}
+
 EnergyWatch StepChooser::watch(const State<Vector>& start) {
   const EnergyWatch watch = subject_.energy_watch(start);
-  return options_.step ? watch : tightened(watch);
+  return options_.step ? watch : tightened(watch, growth());
 }
 
 std::optional<StepPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {

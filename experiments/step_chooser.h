@@ -11,8 +11,9 @@
 namespace springstab {
 
 /// The watch of a run that can be saved: it fires at three times the speed that energy conservation allows,
-/// and at a gain of all the energy of that speed.
-EnergyWatch tightened(EnergyWatch watch);
+/// or at `growth` times if stable steps may let it grow that far before it decays, and at a gain of all the
+/// energy of the allowed speed.
+EnergyWatch tightened(EnergyWatch watch, double growth = 1);
 
 /// The paper's rule made a policy. A step that the user gave is kept, come what may. Otherwise the step is
 /// the recommended one, and a divergence that the watch sees is undone: the run is back at its last
@@ -48,6 +49,7 @@ class StepChooser {
   std::optional<double> recommended(const StiffestMode& k0, const State<Vector>& state);
   MethodLimits limits(const StiffestMode& k0, const State<Vector>& state);
   StepPlan plan(double largest_step, double duration);
+  double growth();
   std::optional<StepPlan> after_divergence(double time, const State<Vector>& state);
 
   Subject& subject_;
@@ -57,6 +59,7 @@ class StepChooser {
   bool designed_;
   std::string reason_;
   double h_ = 0, least_step_ = 0;  // [s]
+  double k0_ = 0;                  // that of the first plan [1/s²]; 0 where it was not needed
   double relinearize_;             // h_m [s]
   long rollbacks_ = 0, halved_steps_ = 0;
   long failures_in_a_row_ = 0, steps_at_last_failure_ = -1;

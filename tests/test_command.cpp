@@ -150,6 +150,11 @@ BOOST_AUTO_TEST_CASE(undamped_limits_follow_from_k0) {
   BOOST_TEST(close(by_name(list, "rk4")["designed"]["h_max"], std::sqrt(8.7623104291285 / k0)));
   BOOST_TEST(close(by_name(list, "symplectic-euler")["h_max"], 2 / std::sqrt(k0)));
   BOOST_TEST(close(by_name(list, "symplectic-euler")["recommended_step"], 2 / std::sqrt(1.5 * k0)));
+  // At Y = 4/1.5: the conserved form v² + Yx² + Yxv has the eigenvalues 1 ± √Y/2 in the norm of the energy.
+  const double half = std::sqrt(4 / 1.5) / 2;
+  BOOST_TEST(std::abs(by_name(list, "symplectic-euler")["transient_growth"].get<double>() /
+                          std::sqrt((1 + half) / (1 - half)) -
+                      1) < 1e-3);
   for (const char* method : {"explicit-euler", "rk2"}) {
     const Json none = by_name(list, method);
     BOOST_TEST(none["status"] == "none");
@@ -188,6 +193,7 @@ BOOST_AUTO_TEST_CASE(springs_with_their_own_damping_have_an_exact_limit_under_sy
   BOOST_TEST(certified["h_certified"].get<double>() <= certified["h_max"].get<double>());
   BOOST_TEST(certified["recommended_step"].get<double>() < certified["h_max"].get<double>());
   BOOST_TEST(by_name(report["methods"], "implicit-euler")["status"] == "unlimited");
+  BOOST_TEST(certified["transient_growth"].is_null());  // not known for this damping
   const Json exact = by_name(report["methods"], "symplectic-euler");
   BOOST_TEST(exact["status"] == "limited");
   BOOST_TEST(exact["h_max_source"] == "exact");

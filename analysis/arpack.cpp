@@ -183,22 +183,35 @@ Eigenvalues dominant_eigenvalues(const LinearOperator& a, Eigen::Index count, co
   if (found.converged) {
     Eigen::VectorXd real = Eigen::VectorXd::Zero(nev + 1), imaginary = Eigen::VectorXd::Zero(nev + 1);
     Eigen::VectorXd workev = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(ncv));
-    Eigen::MatrixXd unused = Eigen::MatrixXd::Zero(n, nev + 1);
+    Eigen::MatrixXd vectors = Eigen::MatrixXd::Zero(n, nev + 1);
     std::vector<a_int> select(ncv);
     a_int info = 0;
-    dneupd_c(0, "A", select.data(), real.data(), imaginary.data(), unused.data(), n, 0, 0, workev.data(), "I",
-             n, iteration.which, nev, iteration.tolerance, iteration.start.data(), ncv,
+    dneupd_c(1, "A", select.data(), real.data(), imaginary.data(), vectors.data(), n, 0, 0, workev.data(),
+             "I", n, iteration.which, nev, iteration.tolerance, iteration.start.data(), ncv,
              iteration.basis.data(), n, iteration.iparam.data(), iteration.ipntr.data(),
              iteration.workd.data(), iteration.workl.data(), static_cast<a_int>(iteration.workl.size()),
              &info);
     if (info != 0) throw std::runtime_error("ARPACK could not extract, info = " + std::to_string(info));
-    for (a_int i = 0; i < std::min(iteration.converged(), nev + 1); ++i) {
-      found.values.emplace_back(iteration.scale * real[i], iteration.scale * imaginary[i]);
-      if (!std::isfinite(std::abs(found.values.back())))
+    std::vector<std::pair<std::complex<double>, Eigen::VectorXcd>> pairs;
+    const a_int usable = std::min(iteration.converged(), nev + 1);
+    for (a_int i = 0; i < usable; ++i) {
+      const std::complex<double> value(iteration.scale * real[i], iteration.scale * imaginary[i]);
+      if (!std::isfinite(std::abs(value)))
         throw std::runtime_error("ARPACK returned an eigenvalue that is not finite");
+      Eigen::VectorXcd vector = vectors.col(i).cast<std::complex<double>>();
+      if (imaginary[i] != 0 && i + 1 < usable) {  // and its conjugate: one column is real, one imaginary
+        vector += std::complex<double>(0, 1) * vectors.col(++i);
+        pairs.emplace_back(std::conj(value), vector.conjugate().normalized());
+      }
+      pairs.emplace_back(value, vector.normalized());
     }
-    std::sort(found.values.begin(), found.values.end(),
-              [](const auto& p, const auto& q) { return std::abs(p) > std::abs(q); });
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const auto& p, const auto& q) { return std::abs(p.first) > std::abs(q.first); });
+    found.vectors.resize(n, static_cast<Eigen::Index>(pairs.size()));
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      found.values.push_back(pairs[i].first);
+      found.vectors.col(static_cast<Eigen::Index>(i)) = pairs[i].second;
+    }
   }
   found.products = iteration.products;
   return found;

@@ -18,7 +18,7 @@ struct LinearOperator {
 
 struct ArpackOptions {
   double tolerance = 1e-10;      // on ‖Av - θv‖, relative to |θ|
-  Eigen::Index basis_size = 64;  // Lanczos/Arnoldi vectors kept (ncv)
+  Eigen::Index basis_size = 32;  // Lanczos/Arnoldi vectors kept (ncv)
   int max_restarts = 2000;
   std::uint64_t seed = 1;   // of the start vector
   Eigen::VectorXd start{};  // used instead if not empty, as from a nearby operator's eigenvector
@@ -41,6 +41,7 @@ struct SymmetricEigenpairs {
 struct Eigenvalues {
   bool converged = false;
   std::vector<std::complex<double>> values;  // largest modulus first
+  Eigen::MatrixXcd vectors;                  // one column per value, of unit norm
   long products = 0;
 };
 

@@ -39,7 +39,6 @@ CertifiedSteps::Restricted& CertifiedSteps::restricted() {
   return *restricted_;
 }
 
-// Some points of W, at least those with the largest k and d.
 const std::vector<ModePoint>& CertifiedSteps::outline() {
   if (!outline_.empty()) return outline_;
   const auto stiffest = range_.farthest(0, 1, loose), most_damped = range_.farthest(1, 0, loose);

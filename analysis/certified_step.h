@@ -31,6 +31,10 @@ class CertifiedSteps {
   /// singular on motions that K resists, or where eigenvalues did not converge.
   std::optional<double> certified(std::string_view method);
 
+  /// Points of W: those with the largest k and d, and where an edge of a polygon has bound. Empty where
+  /// eigenvalues did not converge.
+  const std::vector<ModePoint>& outline();
+
   /// What `certified` would be for the stiffened structure, by eigenvalues instead of proofs.
   std::optional<double> estimated(std::string_view method, const Stiffening& stiffening);
 
@@ -40,7 +44,6 @@ class CertifiedSteps {
   template <class Holds>
   std::optional<double> search(std::string_view method, const Stiffening& stiffening, const Holds& holds);
   std::optional<ExtremePoint> farthest(const HalfPlane& edge, double h, const Stiffening& stiffening);
-  const std::vector<ModePoint>& outline();
   Restricted& restricted();
 
   const StructuralMatrices& s_;

@@ -11,6 +11,8 @@ namespace springstab {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Eigen::Index shift_invert_limit = 20'000;
+constexpr double near_enough = 0.9;  // certified / estimate
 
 // The positive root of a h d + b h² k = c, without cancellation; ∞ where there is none.
 double root(double a, double b, double c, const ModePoint& p) {
@@ -25,8 +27,9 @@ double root(double a, double b, double c, const ModePoint& p) {
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
                                   const Stiffening& stiffening) {
   const auto& [a, b, c] = condition;
-  constexpr double loose = 1e-4, sharp = 0;
-  const double last = stiffening.factor == 1 ? sharp : 1e-6;  // far below what the safety factor covers
+  // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
+  constexpr double loose = 1e-4, sharp = 1e-7, stiffened = 1e-5;
+  const double last = stiffening.factor == 1 ? sharp : stiffened;
   double h = infinity;
   Eigen::VectorXd near;
   for (const auto& [x, y] : {std::pair{0.0, 1.0}, {1.0, 0.0}}) {
@@ -96,8 +99,12 @@ MethodLimits GeneralDamping::compute(std::string_view method) {
     add_exact(*condition, limits);
   } else {
     add_certified(method, limits);
-    add_estimate(method, limits);
-    add_lyapunov(method, limits);
+    if (s_.size() <= generator_limit) {
+      add_estimate(method, limits);
+      add_lyapunov(method, limits);
+    } else {
+      add_estimate_near_boundary(method, limits);
+    }
   }
   return limits;
 }
@@ -171,6 +178,39 @@ void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits)
   limits.source = LimitSource::estimate;
   limits.recommended = least;
   if (limits.h_certified) limits.h_certified = std::min(*limits.h_certified, *limits.h_max);
+}
+
+// Of many unknowns only the eigenvalues near those scalar modes of W that bind first. The true limit is not
+// larger than theirs, nor smaller than what is proved: an estimate where the two are near each other, else
+// nothing.
+void GeneralDamping::add_estimate_near_boundary(std::string_view method, MethodLimits& limits) {
+  if (!limits.h_certified || s_.size() > shift_invert_limit) return;
+  struct Shift {
+    double limit;  // [s]
+    std::complex<double> mu;
+  };
+  std::vector<Shift> shifts;
+  for (const ModePoint& p : certified_.outline()) {
+    const std::complex<double> root = std::sqrt(std::complex<double>(p.d * p.d - 4 * p.k));
+    for (const std::complex<double> mu : {(-p.d + root) / 2.0, (-p.d - root) / 2.0})
+      if (mu.imag() >= 0 && std::abs(mu) > 0)
+        shifts.push_back({critical_step(method, {mu}).value_or(infinity), mu});
+  }
+  std::sort(shifts.begin(), shifts.end(), [](const Shift& p, const Shift& q) { return p.limit < q.limit; });
+  constexpr std::size_t most_shifts = 3;
+  constexpr Eigen::Index modes_a_shift = 8;
+  double least = infinity;
+  for (std::size_t i = 0; i < std::min(most_shifts, shifts.size()) && shifts[i].limit < least; ++i) {
+    const std::vector<std::complex<double>> modes =
+        modes_near(s_, shifts[i].mu, modes_a_shift, {.tolerance = 1e-9, .basis_size = 40, .max_restarts = 6});
+    const std::optional<double> h = critical_step(method, modes, std::sqrt(k0_.value));
+    if (!h) return;
+    least = std::min(least, *h);
+  }
+  if (!(least >= *limits.h_certified && near_enough * least <= *limits.h_certified)) return;
+  limits.h_max = least;
+  limits.status = LimitStatus::limited;
+  limits.source = LimitSource::estimate;
 }
 
 // Where the polygons prove much less than what is true, and there are few unknowns.

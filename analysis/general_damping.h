@@ -44,6 +44,7 @@ class GeneralDamping {
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
   void add_certified(std::string_view method, MethodLimits& limits);
   void add_estimate(std::string_view method, MethodLimits& limits);
+  void add_estimate_near_boundary(std::string_view method, MethodLimits& limits);
   void add_lyapunov(std::string_view method, MethodLimits& limits);
 
   const StiffestMode& k0_;

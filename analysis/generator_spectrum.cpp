@@ -1,6 +1,7 @@
 #include "analysis/generator_spectrum.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +13,7 @@ namespace springstab {
 namespace {
 
 constexpr double rigid = 1e-6, undamped = 1e-9;  // of √‖K'‖ and of the largest |μ|
+constexpr double accurate = 1e-6;
 
 // A function of the generator commutes with it; symplectic Euler's matrix does not.
 bool has_stability_function(std::string_view method) {
@@ -74,10 +76,45 @@ std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s)
   return modes;
 }
 
-std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes) {
+std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::complex<double> shift,
+                                             Eigen::Index count, const ArpackOptions& options) {
+  using Complex = std::complex<double>;
+  const Eigen::Index n = s.size();
+  const double rate = std::abs(shift);  // makes time dimensionless
+  const Complex sigma = shift / rate;
+  const SparseMatrix k = s.stiffness / (rate * rate);
+  const SparseMatrix d = s.has_damping() ? SparseMatrix(s.damping / rate) : SparseMatrix(n, n);
+  const Eigen::SparseMatrix<Complex> shifted =
+      (sigma * sigma * s.mass.cast<Complex>() + sigma * d.cast<Complex>() + k.cast<Complex>());
+  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> factor;
+  factor.isSymmetric(true);
+  factor.compute(shifted);
+  if (factor.info() != Eigen::Success) return {};
+  // (C - σ)(x, v) = (a, b): v = a + σx and (σ²M + σD + K)x = -(Mb + Da + σMa).
+  const LinearOperator inverse{2 * n, [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+                                 const Eigen::VectorXcd a = in.head(n).cast<Complex>();
+                                 const Eigen::VectorXcd b = (in.tail(n) + sigma * a).eval();
+                                 const Eigen::VectorXcd x = factor.solve(-(s.mass * b + d * a));
+                                 out.resize(2 * n);
+                                 out << x.real(), (a + sigma * x).real();
+                               }};
+  const Eigenvalues found = dominant_eigenvalues(inverse, count, options);
+  std::vector<Complex> modes;
+  for (Eigen::Index i = 0; i < found.vectors.cols(); ++i) {
+    const Eigen::VectorXcd x = found.vectors.col(i).head(n);
+    const Complex mu = x.dot(found.vectors.col(i).tail(n)) / x.squaredNorm();
+    const Eigen::VectorXcd mass = mu * mu * (s.mass * x), damping = mu * (d * x), stiffness = k * x;
+    if ((mass + damping + stiffness).norm() <= accurate * (mass.norm() + damping.norm() + stiffness.norm()))
+      modes.push_back(rate * mu);
+  }
+  return modes;
+}
+
+std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes,
+                                    double largest) {
   if (!has_stability_function(method)) return std::nullopt;
   const StabilityRegion& region = stability_region(method);
-  double largest = 0, h = std::numeric_limits<double>::infinity();
+  double h = std::numeric_limits<double>::infinity();
   for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
   for (const std::complex<double> mu : modes) {
     // A real μ stands for the mode with the double root μ.

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/arpack.h"
 #include "solvers/linear/structural_matrices.h"
 
 namespace springstab {
@@ -26,9 +27,17 @@ struct DampedMode {
 /// The eigenpairs of those eigenvalues.
 std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s);
 
+/// The eigenvalues [1/s] nearest to `shift`, about `count` of them: ARPACK's, of the real part of
+/// (C - shift)⁻¹, which has the eigenvectors of the generator C. Each solves μ² M x + μ D x + K x = 0 to 1e-6
+/// of its terms; nothing where none does or the shifted matrix is singular.
+std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::complex<double> shift,
+                                             Eigen::Index count, const ArpackOptions& options = {});
+
 /// The largest H such that every 0 < h < H keeps all these modes stable or neutral, for a method with a
 /// stability function, whose eigenvalues on them are R(hμ). An estimate: the eigenvalues carry rounding.
-/// Nothing for other methods, and where it hinges on a real part of rounding's size.
-std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes);
+/// Nothing for other methods, and where it hinges on a real part of rounding's size: 1e-9 of the largest |μ|,
+/// of these modes or, where they are only some, `largest`.
+std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes,
+                                    double largest = 0);
 
 }  // namespace springstab

@@ -42,10 +42,8 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
                              out = b * out + a * part;
                            }};
   ArpackOptions options = options_;
-  if (tolerance > options.tolerance) {
-    options.tolerance = tolerance;
-    options.basis_size = 24;  // fewer vectors to orthogonalize against
-  }
+  options.tolerance = std::max(options.tolerance, tolerance);
+  if (tolerance > 1e-6) options.basis_size = 24;  // fewer vectors to orthogonalize against
   if (near.size() > 0) {  // with a little of every other vector, lest the largest is orthogonal to it
     const Eigen::VectorXd random = start_vector(size_, {}, options_.seed);
     options.start = near + 1e-2 / random.norm() * random;

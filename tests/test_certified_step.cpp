@@ -312,6 +312,61 @@ BOOST_AUTO_TEST_CASE(damping_of_roundings_size_allows_no_step) {
   BOOST_TEST(general.limits("rk4").h_certified.value() > 0.9 * general.limits("rk4").h_max.value());
 }
 
+SpringNet damped_sheet(RandomNets& random, int rows, int columns) {
+  SpringNet net = make_net(Grid{rows, columns, 0.1}, {.damping = {0.05, 0.02, 0.01}});
+  for (Spring& spring : net.springs) {
+    spring.stiffness *= random.log_uniform(-1, 1);
+    spring.damping = spring.stiffness * random.log_uniform(-4, -3);
+  }
+  for (Eigen::Vector3d& p : net.rest)
+    p += 0.03 * Eigen::Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+  for (Spring& spring : net.springs)
+    spring.rest_length = random.uniform(0.9, 1) * (net.rest[spring.i] - net.rest[spring.j]).norm();
+  return net;
+}
+
+BOOST_AUTO_TEST_CASE(modes_near_a_shift_are_those_of_the_whole_spectrum) {
+  RandomNets random(15);
+  int found = 0;
+  for (int i = 0; i < 10; ++i) BOOST_TEST_CONTEXT("sheet " << i) {
+      const StructuralMatrices s = matrices(damped_sheet(random, 5, 6));
+      const std::vector<std::complex<double>> all = generator_spectrum(s).value();
+      const std::complex<double> shift =
+          all[static_cast<std::size_t>(random.uniform(0, static_cast<double>(all.size())))] *
+          std::polar(1.001, 0.001);
+      for (const std::complex<double> mu : modes_near(s, shift, 6)) {
+        double nearest = infinity;
+        for (const std::complex<double> other : all) nearest = std::min(nearest, std::abs(mu - other));
+        BOOST_TEST(nearest <= 1e-6 * std::abs(mu));
+        ++found;
+      }
+    }
+  BOOST_TEST(found >= 40);
+}
+
+// Above the size of dense eigenvalues the truth lies between what is proved and what is estimated.
+BOOST_AUTO_TEST_CASE(estimates_of_large_sheets_enclose_the_truth) {
+  RandomNets random(16);
+  int estimates = 0;
+  for (int i = 0; i < 2; ++i) BOOST_TEST_CONTEXT("sheet " << i) {
+      const StructuralMatrices s = matrices(damped_sheet(random, 9, 16));
+      BOOST_TEST(s.size() > generator_limit);
+      const StiffestMode k0 = stiffest_mode(s);
+      GeneralDamping general(s, k0, {DampingModel::Kind::general, 0, 0, true}, 1.5, true);
+      for (const std::string_view method : {"rk4", "rk2"}) {
+        const MethodLimits limits = general.limits(method);
+        if (!limits.h_max) continue;
+        ++estimates;
+        const double truth = dense_truth(s, method);
+        BOOST_TEST((limits.source == LimitSource::estimate));
+        BOOST_TEST(*limits.h_certified <= truth);
+        BOOST_TEST(truth <= *limits.h_max * (1 + 1e-6));
+        BOOST_TEST(*limits.h_certified >= 0.9 * *limits.h_max);
+      }
+    }
+  BOOST_TEST(estimates >= 2);
+}
+
 // A net near a mechanism has small pivots that are not rounding, and rounding that is not small.
 BOOST_AUTO_TEST_CASE(as_many_unknowns_are_held_as_there_are_rigid_motions) {
   RandomNets random(13);

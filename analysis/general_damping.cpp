@@ -94,7 +94,16 @@ MethodLimits GeneralDamping::limits(std::string_view method) {
 
 MethodLimits GeneralDamping::compute(std::string_view method) {
   MethodLimits limits = method_limits(method, k0_, damping_, safety_);
-  if (limits.status != LimitStatus::unknown || !limits.unproved.empty()) return limits;
+  if (!k0_.converged) return limits;
+  if (!s_.symmetric) {
+    limits = {};
+    limits.unproved = "K or D is not symmetric";
+  }
+  if (!limits.unproved.empty()) {
+    add_estimate(method, limits);
+    return limits;
+  }
+  if (limits.status != LimitStatus::unknown) return limits;
   if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
     add_exact(*condition, limits);
   } else {
@@ -154,9 +163,7 @@ void GeneralDamping::add_certified(std::string_view method, MethodLimits& limits
   if (std::isfinite(least)) limits.recommended = least;
 }
 
-// The true critical step, from eigenvalues, where there are few enough unknowns; the recommended step then
-// is the smallest of such.
-void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits) {
+const std::optional<std::vector<std::complex<double>>>& GeneralDamping::own_spectrum() {
   if (spectra_.empty())
     for (const Stiffening& stiffening : stiffenings()) {
       StructuralMatrices stiffer = s_;
@@ -165,18 +172,32 @@ void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits)
       spectra_.push_back(generator_spectrum(stiffer));
       if (!spectra_.back()) break;
     }
+  return spectra_.front();
+}
+
+std::optional<double> GeneralDamping::growth() {
+  if (s_.size() > generator_limit || !own_spectrum()) return std::nullopt;
+  return growth_rate(*own_spectrum());
+}
+
+// The true critical step, from eigenvalues, where there are few enough unknowns; the recommended step then
+// is the smallest of such.
+void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits) {
+  own_spectrum();
   double least = infinity;
   std::vector<double> steps;
+  const bool semidefinite = s_.symmetric && !k0_.indefinite && damping_.semidefinite;
   for (const auto& spectrum : spectra_) {
+    if (semidefinite && spectrum && growth_rate(*spectrum) > 0) return;  // which cannot be: rounding is large
     const std::optional<double> h = spectrum ? critical_step(method, *spectrum) : std::nullopt;
-    if (!h || !std::isfinite(*h) || !(*h > 0)) return;
+    if (!h || !(*h > 0)) return;
     steps.push_back(*h);
     least = std::min(least, *h);
   }
   limits.h_max = steps.front();
-  limits.status = LimitStatus::limited;
+  limits.status = std::isinf(steps.front()) ? LimitStatus::unlimited : LimitStatus::limited;
   limits.source = LimitSource::estimate;
-  limits.recommended = least;
+  if (std::isfinite(least)) limits.recommended = least;
   if (limits.h_certified) limits.h_certified = std::min(*limits.h_certified, *limits.h_max);
 }
 

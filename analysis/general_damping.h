@@ -34,10 +34,16 @@ class GeneralDamping {
   GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
                  double safety, bool proofs, const ArpackOptions& options = {});
 
-  /// Unknown where K or D is indefinite, with that as the reason.
+  /// Nothing is certified where K or D is indefinite or not symmetric, and that is the reason given: there
+  /// the eigenvalues decide, of the motions that do not grow by themselves.
   MethodLimits limits(std::string_view method);
 
+  /// How fast the motion itself grows, the largest Re μ [1/s]: 0 where none does, nothing where not all
+  /// eigenvalues were computed.
+  std::optional<double> growth();
+
  private:
+  const std::optional<std::vector<std::complex<double>>>& own_spectrum();
   MethodLimits compute(std::string_view method);
   std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
   void set_certified(std::optional<double> h, Proof proof, MethodLimits& limits);

@@ -32,12 +32,14 @@ std::optional<Generator> generator_of(const StructuralMatrices& s) {
   const Eigen::Index n = s.size();
   if (n > generator_limit) return std::nullopt;
   Generator g;
-  g.stiffness = symmetric_part(as_dense(scaled_stiffness(s)));
+  g.stiffness = as_dense(scaled_stiffness(s));
+  if (s.symmetric) g.stiffness = symmetric_part(g.stiffness);
   g.rate = std::sqrt(g.stiffness.norm());
   if (!(g.rate > 0)) return std::nullopt;
   g.stiffness /= g.rate * g.rate;
   g.damping = Eigen::MatrixXd::Zero(n, n);
-  if (s.has_damping()) g.damping = symmetric_part(as_dense(mass_scaled(s.damping, s.mass))) / g.rate;
+  if (s.has_damping()) g.damping = as_dense(mass_scaled(s.damping, s.mass)) / g.rate;
+  if (s.symmetric) g.damping = symmetric_part(g.damping);
   g.matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   g.matrix.topRightCorner(n, n).setIdentity();
   g.matrix.bottomLeftCorner(n, n) = -g.stiffness;
@@ -74,6 +76,14 @@ std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s)
                      rate * rate * v.dot(generator->stiffness * v).real()});
   }
   return modes;
+}
+
+double growth_rate(const std::vector<std::complex<double>>& modes) {
+  double largest = 0, growth = 0;
+  for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  for (const std::complex<double> mu : modes)
+    if (mu.real() > undamped * largest) growth = std::max(growth, mu.real());
+  return growth;
 }
 
 std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::complex<double> shift,
@@ -120,7 +130,7 @@ std::optional<double> critical_step(std::string_view method, const std::vector<s
     // A real μ stands for the mode with the double root μ.
     const bool no_damping = std::abs(mu.real()) <= undamped * largest;
     const double d = no_damping ? 0 : -2 * mu.real();
-    if (d < 0) return std::nullopt;
+    if (d < 0) continue;  // the motion itself grows
     const double limit = region.critical_step(std::norm(mu), d);
     if (no_damping && limit == 0) return std::nullopt;
     h = std::min(h, limit);

@@ -27,13 +27,18 @@ struct DampedMode {
 /// The eigenpairs of those eigenvalues.
 std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s);
 
+/// The largest Re μ [1/s] where that is more than rounding: the motion itself grows, whatever the method;
+/// else 0.
+double growth_rate(const std::vector<std::complex<double>>& modes);
+
 /// The eigenvalues [1/s] nearest to `shift`, about `count` of them: ARPACK's, of the real part of
 /// (C - shift)⁻¹, which has the eigenvectors of the generator C. Each solves μ² M x + μ D x + K x = 0 to 1e-6
 /// of its terms; nothing where none does or the shifted matrix is singular.
 std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::complex<double> shift,
                                              Eigen::Index count, const ArpackOptions& options = {});
 
-/// The largest H such that every 0 < h < H keeps all these modes stable or neutral, for a method with a
+/// The largest H such that every 0 < h < H keeps all these modes stable or neutral, but those that grow by
+/// themselves, for a method with a
 /// stability function, whose eigenvalues on them are R(hμ). An estimate: the eigenvalues carry rounding.
 /// Nothing for other methods, and where it hinges on a real part of rounding's size: 1e-9 of the largest |μ|,
 /// of these modes or, where they are only some, `largest`.

@@ -40,6 +40,7 @@ LimitStatus status_of(double h) {
 
 DampingModel classify_damping(const StructuralMatrices& s) {
   if (!s.has_damping()) return {};
+  if (!s.symmetric) return {DampingModel::Kind::general, 0, 0, false};
   constexpr double tolerance = 1e-12;
   DampingModel fit = rayleigh_fit(s);
   const double size = s.damping.norm();

@@ -15,6 +15,7 @@ namespace {
 
 using Cholesky = Eigen::SimplicialLLT<SparseMatrix>;
 
+constexpr Eigen::Index nonsymmetric_limit = 400;
 constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
@@ -42,6 +43,22 @@ StiffestMode dense_spectrum(const LinearOperator& s) {
   Eigen::VectorXd column;
   s.apply(solver.eigenvectors().rightCols<1>(), column);
   mode.residual = (column - mode.value * solver.eigenvectors().rightCols<1>()).stableNorm();
+  return mode;
+}
+
+// Of a matrix that is not symmetric: the eigenvalue of largest modulus, and the least real part.
+StiffestMode nonsymmetric_spectrum(const LinearOperator& s) {
+  StiffestMode mode;
+  if (s.size > nonsymmetric_limit) return mode;
+  const Eigen::MatrixXd matrix = as_dense(s);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
+  mode.converged = solver.info() == Eigen::Success;
+  if (!mode.converged) return mode;
+  Eigen::Index largest = 0;
+  mode.value = solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
+  mode.smallest = solver.eigenvalues().real().minCoeff();
+  const Eigen::VectorXcd v = solver.eigenvectors().col(largest).normalized();
+  mode.residual = (matrix * v - solver.eigenvalues()[largest] * v).norm();
   return mode;
 }
 
@@ -93,7 +110,9 @@ bool is_below(const StructuralMatrices& s, double sigma) {
 
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
   const LinearOperator op = scaled_stiffness(s);
-  StiffestMode mode = s.size() <= dense_limit ? dense_spectrum(op) : arpack_spectrum(op, options);
+  StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op)
+                      : s.size() <= dense_limit ? dense_spectrum(op)
+                                                : arpack_spectrum(op, options);
   mode.upper_bound = std::numeric_limits<double>::infinity();
   return mode;
 }
@@ -105,7 +124,7 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
     mode.gershgorin = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
     mode.upper_bound = mode.gershgorin;
   }
-  if (!mode.converged || s.size() > DefinitenessProof::factorization_limit) return mode;
+  if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return mode;
 
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;

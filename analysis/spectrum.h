@@ -45,8 +45,9 @@ Eigen::MatrixXd as_dense(const LinearOperator& a);
 /// (A + Aᵀ)/2.
 Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a);
 
-/// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Above 150 000 unknowns nothing is factorized: the
-/// bound is Gershgorin's and definiteness is not tested.
+/// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Where K is not symmetric it is the largest |λ|,
+/// found up to 400 unknowns, bounded by Gershgorin alone, and `smallest` the least real part. Above 150 000
+/// unknowns nothing is factorized: the bound is Gershgorin's and definiteness is not tested.
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
 
 /// The same without a proof, which costs more than k0 itself: the bound is ∞, definiteness is not tested.

@@ -200,13 +200,13 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   if (!(options.max_step > 0 && std::isfinite(options.max_step)))
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
   if (!options.method.empty()) find_method(options.method);
-  Subject subject(options.input);
+  Subject subject(options.input, true);
   const StructuralMatrices structure = subject.structure(subject.initial_state(common.seed));
   const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
   const DampingModel damping = subject.damping();
 
   std::vector<Row> rows;
-  const bool general = damping.kind == DampingModel::Kind::general && k0.converged;
+  const bool general = (damping.kind == DampingModel::Kind::general || !structure.symmetric) && k0.converged;
   std::optional<GeneralDamping> general_damping;
   if (general)
     general_damping.emplace(structure, k0, damping, options.safety, true, ArpackOptions{.seed = common.seed});
@@ -222,8 +222,11 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (limits.status == LimitStatus::unlimited) limits.recommended = options.max_step;
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
-    rows.push_back({info.name, limits, h_every_pose, growth_at_recommended(info.name, limits, k0, damping)});
+    const auto growth = general ? std::nullopt : growth_at_recommended(info.name, limits, k0, damping);
+    rows.push_back({info.name, limits, h_every_pose, growth});
   }
+
+  const std::optional<double> growth_rate = general ? general_damping->growth() : std::nullopt;
 
   if (common.json) {
     Json list = Json::array();
@@ -236,6 +239,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                       {"condensed", structure.condensed},
                       {"k0", k0_json(k0)},
                       {"stiffness_indefinite", k0.indefinite},
+                      {"symmetric", structure.symmetric},
+                      {"growth_rate", number(growth_rate)},
                       {"damping", damping_json(damping)},
                       {"safety", options.safety},
                       {"methods", list}}
@@ -244,6 +249,14 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   } else if (k0.converged) {
     print(structure, k0, damping, options.safety);
     for (const Row& row : rows) print(row.method, row.limits);
+    if (!structure.symmetric)
+      std::cout
+          << "\nK or D is not symmetric: these limits are estimates, from all eigenvalues of the motion\n";
+    if (growth_rate.value_or(0) > 0)
+      std::cout << text(
+          "\nthe motion itself grows, by e in %.4g s (Re μ = %.6g 1/s), whatever the method; limits are "
+          "for the other modes\n",
+          1 / *growth_rate, *growth_rate);
     print_growth(rows);
     print_reasons(rows);
     for (const Row& row : rows)

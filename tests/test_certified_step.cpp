@@ -13,9 +13,11 @@
 #include "analysis/general_damping.h"
 #include "analysis/generator_spectrum.h"
 #include "analysis/rigid_motions.h"
+#include "solvers/io/matrix_file.h"
 #include "solvers/scene/every_pose.h"
 #include "solvers/stepper.h"
 #include "tests/random_nets.h"
+#include "tests/shared_data.h"
 
 using namespace springstab;
 using namespace springstab::test;
@@ -430,22 +432,98 @@ BOOST_AUTO_TEST_CASE(implicit_euler_is_stable_for_any_masses_stiffness_and_dampi
     }
 }
 
-BOOST_AUTO_TEST_CASE(nothing_is_said_of_structures_that_grow_by_themselves) {
+// A rotor: undamped gyroscopic forces, D = -Dᵀ, move each frequency: ω⁴ - (k₁ + k₂ + g²) ω² + k₁k₂ = 0.
+BOOST_AUTO_TEST_CASE(gyroscopic_forces_leave_the_eigenvalues_to_decide) {
+  for (const double unit : {1.0, 1e9, 1e-9}) {
+    const Eigen::Matrix2d k = unit * unit * Eigen::Matrix2d{{1, 0}, {0, 4}},
+                          g = unit * Eigen::Matrix2d{{0, 3}, {-3, 0}};
+    const StructuralMatrices s =
+        prepare_nonsymmetric(k.sparseView(0.0, 0.0), SparseMatrix(), g.sparseView(0.0, 0.0));
+    BOOST_TEST(!s.symmetric);
+    const StiffestMode k0 = stiffest_mode(s);
+    BOOST_TEST(k0.value == 4 * unit * unit, tolerance(1e-12));
+    GeneralDamping general(s, k0, classify_damping(s), 1.5, true);
+    const double omega = std::sqrt((14 + std::sqrt(14 * 14 - 16)) / 2) * unit;
+    BOOST_TEST(general.growth().value() == 0);
+    const MethodLimits rk4 = general.limits("rk4"), implicit = general.limits("implicit-euler");
+    BOOST_TEST(rk4.h_max.value() == 2 * std::sqrt(2) / omega, tolerance(1e-9));
+    BOOST_TEST((rk4.source == LimitSource::estimate));
+    BOOST_TEST(rk4.unproved == "K or D is not symmetric");
+    BOOST_TEST((implicit.status == LimitStatus::unlimited));
+    BOOST_TEST(!implicit.h_certified);
+    BOOST_TEST(!general.limits("explicit-euler").h_max);  // undamped
+    BOOST_TEST((general.limits("symplectic-euler").status == LimitStatus::unknown));
+  }
+}
+
+// A follower force couples two equal modes, K = [[2, 1], [-1, 2]]: μ = ±√(-2 ± i), two of which grow.
+BOOST_AUTO_TEST_CASE(flutter_is_the_structures_own) {
+  const Eigen::Matrix2d k{{2, 1}, {-1, 2}}, d = 1e-3 * Eigen::Matrix2d::Identity();
+  const StructuralMatrices s =
+      prepare_nonsymmetric(k.sparseView(0.0, 0.0), SparseMatrix(), d.sparseView(0.0, 0.0));
+  const StiffestMode k0 = stiffest_mode(s);
+  BOOST_TEST(k0.value == std::sqrt(5), tolerance(1e-12));
+  GeneralDamping general(s, k0, classify_damping(s), 1.5, true);
+  const std::complex<double> root = std::sqrt(std::complex<double>(1e-6 / 4 - 2, 1));
+  BOOST_TEST(general.growth().value() == root.real() - 5e-4, tolerance(1e-12));
+  const std::complex<double> other = -5e-4 - root;  // the mode that decays
+  BOOST_TEST(general.limits("explicit-euler").h_max.value() == -2 * other.real() / std::norm(other),
+             tolerance(1e-9));
+  BOOST_CHECK_THROW(prepare(k.sparseView(0.0, 0.0)), std::invalid_argument);
+}
+
+// The limits that stand in the notes of that problem, whose K is not symmetric.
+BOOST_AUTO_TEST_CASE(the_hospital_has_the_limits_of_its_notes) {
+  const auto k = shared_data("matrices/nlevp_hospital_K.mtx"),
+             d = shared_data("matrices/nlevp_hospital_D.mtx");
+  if (!k || !d) return;
+  const StructuralMatrices s =
+      prepare_nonsymmetric(read_matrix(k->string()), SparseMatrix(), read_matrix(d->string()));
+  const StiffestMode k0 = stiffest_mode(s);
+  BOOST_TEST(k0.value == 8045.00001646865349, tolerance(1e-12));
+  BOOST_TEST(k0.smallest.value() == 27.419997222627919, tolerance(1e-10));
+  GeneralDamping general(s, k0, classify_damping(s), 1.5, true);
+  BOOST_TEST(general.growth().value() == 0);
+  for (const auto& [method, h] : {std::pair{"explicit-euler", 0.0011149461183252914},
+                                  {"rk2", 0.00891935463676813},
+                                  {"rk4", 0.0324414616286668}})
+    BOOST_TEST(general.limits(method).h_max.value() == h, tolerance(1e-9));
+}
+
+// One damper on a shaft with massless unknowns: no more is certified than eigenvalues allow.
+BOOST_AUTO_TEST_CASE(the_shaft_is_certified_below_its_limit) {
+  const auto k = shared_data("matrices/nlevp_shaft_K.mtx"), m = shared_data("matrices/nlevp_shaft_M.mtx"),
+             c = shared_data("matrices/nlevp_shaft_C.mtx");
+  if (!k || !m || !c) return;
+  const StructuralMatrices s =
+      prepare(read_matrix(k->string()), read_matrix(m->string()), read_matrix(c->string()));
+  const StiffestMode k0 = stiffest_mode(s);
+  BOOST_TEST(k0.value == 14833231231829.38229459, tolerance(1e-9));
+  GeneralDamping general(s, k0, classify_damping(s), 1.5, true);
+  const MethodLimits rk4 = general.limits("rk4"), symplectic = general.limits("symplectic-euler");
+  BOOST_TEST(rk4.h_max.value() <= std::sqrt(8 / k0.value) * (1 + 1e-6));  // one damper among stiff springs
+  BOOST_TEST(rk4.h_certified.value() <= rk4.h_max.value());
+  BOOST_TEST(rk4.h_certified.value() >= 0.99 * rk4.h_max.value());
+  BOOST_TEST(symplectic.h_certified.value() <= symplectic.h_max.value());
+  BOOST_TEST(symplectic.h_max.value() <= 2 / std::sqrt(k0.value) * (1 + 1e-9));
+}
+
+BOOST_AUTO_TEST_CASE(nothing_is_certified_of_structures_that_may_grow_by_themselves) {
   RandomNets random(6);
   const StructuralMatrices s = matrices(random.net(true));
   StiffestMode k0 = stiffest_mode(s);
   DampingModel general{DampingModel::Kind::general, 0, 0, false};
-  const auto is_unknown = [&](std::string_view method, std::string_view reason) {
+  const auto has_no_proof = [&](std::string_view method, std::string_view reason) {
     const MethodLimits limits = GeneralDamping(s, k0, general, 1.5, true).limits(method);
-    BOOST_TEST((limits.status == LimitStatus::unknown));
+    BOOST_TEST((!limits.h_max || limits.source == LimitSource::estimate));
     BOOST_TEST(!limits.h_certified);
     BOOST_TEST(limits.unproved == reason);
   };
   for (const MethodInfo& method : all_methods()) {
-    is_unknown(method.name, "D is indefinite");
+    has_no_proof(method.name, "D is indefinite");
     k0.indefinite = true;
     general.semidefinite = true;
-    is_unknown(method.name, "K is indefinite");
+    has_no_proof(method.name, "K is indefinite");
     k0.indefinite = false;
     general.semidefinite = false;
   }

@@ -509,7 +509,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
       {"limits --grid 2x2 --safety nan", "safety"},
       {"limits --grid 2x2 --method rk3", "rk4"},
       {"limits --grid 2x2 --spacing -1", "--grid"},
-      {"limits --stiffness skew.mtx", "not symmetric"},
+      {"simulate --stiffness skew.mtx --method rk4 --duration 1", "not symmetric"},
       {"simulate --stiffness saddle.mtx --method rk4 --duration 1 --damping designed", "designed"},
       {"limits --stiffness saddle.mtx --mass one.mtx", "mass matrix is 1 x 1"},
       {"limits --mass one.mtx cloth.obj", "--stiffness"},

@@ -107,7 +107,7 @@ Grid parse_grid(const std::string& text, const std::string& source) {
   return grid;
 }
 
-Subject::Subject(const InputOptions& options) {
+Subject::Subject(const InputOptions& options, bool any_matrices) {
   const int given = !options.file.empty() + !options.grid.empty() + !options.stiffness.empty();
   if (given != 1)
     throw InputError("input", 0,
@@ -118,17 +118,18 @@ Subject::Subject(const InputOptions& options) {
       throw InputError("input", 0, "--mass and --damping-matrix go with --stiffness");
     build_scene(describe(options));
   } else {
-    build_matrices(options);
+    build_matrices(options, any_matrices);
   }
 }
 
-void Subject::build_matrices(const InputOptions& options) {
+void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   if (options.spacing || !options.material.empty() || !options.pin.empty())
     throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
   const auto read = [](const std::string& path) { return path.empty() ? SparseMatrix() : read_matrix(path); };
   SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
   matrices_ = naming(options.stiffness, [&] {
-    return std::make_unique<MatrixSystem>(prepare(std::move(k), std::move(m), std::move(d)));
+    const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
+    return std::make_unique<MatrixSystem>(make(std::move(k), std::move(m), std::move(d)));
   });
 }
 

@@ -27,7 +27,8 @@ struct InputOptions {
 class Subject {
  public:
   /// Throws InputError or std::invalid_argument when the input is unusable.
-  explicit Subject(const InputOptions& options);
+  /// Matrices must be symmetric unless `any_matrices` (prepare_nonsymmetric).
+  explicit Subject(const InputOptions& options, bool any_matrices = false);
   explicit Subject(const SceneDescription& description);
 
   System& system();
@@ -61,7 +62,7 @@ class Subject {
   template <class Cloth>
   void place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
              const std::string& source);
-  void build_matrices(const InputOptions& options);
+  void build_matrices(const InputOptions& options, bool any_matrices);
 
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<MatrixSystem> matrices_;

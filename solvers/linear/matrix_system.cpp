@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
+#include <stdexcept>
 
 namespace springstab {
 
@@ -36,6 +37,8 @@ void MatrixSystem::damping_times(const Vector& u, Vector& out) {
 }
 
 SolveReport MatrixSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
+  if (!matrices_.symmetric)
+    throw std::invalid_argument("K or D is not symmetric, expected symmetric ones for an implicit step");
   if (factors_->h != h) {
     SparseMatrix shifted = matrices_.mass + h * h * matrices_.stiffness;
     if (matrices_.has_damping()) shifted += h * matrices_.damping;

@@ -8,6 +8,7 @@
 
 namespace springstab {
 
+/// Where K or D is not symmetric an implicit step throws std::invalid_argument.
 /// Solves with M and with M + hD + h²K by sparse Cholesky factors; the latter is kept while h stays the same.
 class MatrixSystem final : public LinearSystem {
  public:

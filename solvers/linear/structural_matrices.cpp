@@ -26,8 +26,9 @@ double largest_entry(const SparseMatrix& a) {
   return largest;
 }
 
-// The symmetric part of `a`, after checking that there is next to nothing else.
-SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size) {
+// The symmetric part of `a`, after checking that there is next to nothing else; or all of it, where
+// `symmetric` is given to be cleared if there is.
+SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size, bool* symmetric = nullptr) {
   a.makeCompressed();
   if (a.rows() != a.cols() || a.rows() != size)
     throw std::invalid_argument("the " + name + " matrix is " + shape(a) + ", expected " +
@@ -39,6 +40,10 @@ SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size)
   const SparseMatrix transposed = a.transpose();
   const double asymmetry = largest_entry(a - transposed), largest = largest_entry(a);
   if (asymmetry > symmetry_tolerance * largest) {
+    if (symmetric) {
+      *symmetric = false;
+      return a;
+    }
     std::ostringstream message;
     message << "the " << name << " matrix is not symmetric (an entry differs from its mirror image by "
             << asymmetry << ", the largest entry is " << largest << "), expected a symmetric one";
@@ -114,6 +119,31 @@ void condense(StructuralMatrices& s) {
   s.condensed = b;
 }
 
+// Of K and D only symmetric ones are accepted, unless they may be `any`.
+StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping, bool any) {
+  const Eigen::Index n = stiffness.rows();
+  if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
+  if (mass.size() == 0) {
+    mass.resize(n, n);
+    mass.setIdentity();
+  }
+  StructuralMatrices s;
+  s.stiffness = checked(std::move(stiffness), "stiffness", n, any ? &s.symmetric : nullptr);
+  s.mass = checked(std::move(mass), "mass", n);
+  if (damping.size() > 0) s.damping = checked(std::move(damping), "damping", n, any ? &s.symmetric : nullptr);
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (s.mass.coeff(i, i) < 0) {
+      std::ostringstream message;
+      message << "the mass of unknown " << i + 1 << " is " << s.mass.coeff(i, i)
+              << ", expected no negative mass";
+      throw std::invalid_argument(message.str());
+    }
+  if (s.symmetric) condense(s);
+  if (!is_definite(s.mass))
+    throw std::invalid_argument("the mass matrix is not positive definite, expected a positive definite one");
+  return s;
+}
+
 }  // namespace
 
 bool is_diagonal(const SparseMatrix& a) {
@@ -124,27 +154,11 @@ bool is_diagonal(const SparseMatrix& a) {
 }
 
 StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping) {
-  const Eigen::Index n = stiffness.rows();
-  if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
-  if (mass.size() == 0) {
-    mass.resize(n, n);
-    mass.setIdentity();
-  }
-  StructuralMatrices s;
-  s.stiffness = checked(std::move(stiffness), "stiffness", n);
-  s.mass = checked(std::move(mass), "mass", n);
-  if (damping.size() > 0) s.damping = checked(std::move(damping), "damping", n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    if (s.mass.coeff(i, i) < 0) {
-      std::ostringstream message;
-      message << "the mass of unknown " << i + 1 << " is " << s.mass.coeff(i, i)
-              << ", expected no negative mass";
-      throw std::invalid_argument(message.str());
-    }
-  condense(s);
-  if (!is_definite(s.mass))
-    throw std::invalid_argument("the mass matrix is not positive definite, expected a positive definite one");
-  return s;
+  return prepare(std::move(stiffness), std::move(mass), std::move(damping), false);
+}
+
+StructuralMatrices prepare_nonsymmetric(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping) {
+  return prepare(std::move(stiffness), std::move(mass), std::move(damping), true);
 }
 
 }  // namespace springstab

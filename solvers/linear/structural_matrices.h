@@ -11,6 +11,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 struct StructuralMatrices {
   SparseMatrix stiffness, mass, damping;
   Eigen::Index condensed = 0;  // massless unknowns that were eliminated
+  bool symmetric = true;       // K and D are; M always is
 
   Eigen::Index size() const { return stiffness.rows(); }
   bool has_damping() const { return damping.nonZeros() > 0; }
@@ -21,6 +22,11 @@ struct StructuralMatrices {
 /// K ← K_aa - K_ab K_bb⁻¹ K_ba, which needs K_bb positive definite and no damping on them. An empty M stands
 /// for the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
 StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass = {}, SparseMatrix damping = {});
+
+/// The same for any K and D, as of follower forces and rotors; where one is not symmetric it stays so, and
+/// every unknown needs mass.
+StructuralMatrices prepare_nonsymmetric(SparseMatrix stiffness, SparseMatrix mass = {},
+                                        SparseMatrix damping = {});
 
 /// Whether nothing is stored off the diagonal.
 bool is_diagonal(const SparseMatrix& a);

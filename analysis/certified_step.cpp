@@ -72,6 +72,9 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
   for (int round = 0; round < 60 && margin < 0.5; ++round) {
     PolygonFit fit = inscribed_polygons(method).fit(modes);
     if (!(fit.h > shortest) || fit.edges.empty() || !std::isfinite(fit.h)) return std::nullopt;
+    const bool from_origin = std::any_of(fit.edges.begin(), fit.edges.end(),
+                                         [](const HalfPlane& edge) { return edge.bound == 0; });
+    if (from_origin && s_.size() > DefinitenessProof::factorization_limit) return std::nullopt;
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();

@@ -252,13 +252,35 @@ void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOption
   });
 }
 
+void add_stress(CLI::App& app, const CommonOptions& common, StressOptions& o, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand("stress", "Stiff, extreme and hostile cases by every method");
+  command->add_option("--filter", o.filter, "only cases whose class or name contains this")
+      ->type_name("TEXT");
+  command->add_option("--output", o.output, "folder for the table, stress.csv")->type_name("DIR");
+  command->footer(
+      "Each case is a file or several, run as `simulate` would with steps of at most a hundredth of its "
+      "duration [s].\n"
+      "Outcomes: right (within a tenth of the true motion, or bounded below a limit), diverges (above one), "
+      "refused (the\n"
+      "input, with a reason), no step (the method has no stable one), limit (right as far as it came: the "
+      "whole "
+      "motion\n"
+      "would take too many steps), wrong (anything else).\n"
+      "JSON: cases, runs, unexpected, outcomes, results[] {class, case, method, expectation, outcome, "
+      "as_expected,\n"
+      "detail, step, steps, error}, files. Exit status 3: an outcome is not the expected one.\n\n"
+      "example: springstab stress --filter 'mass ratio' --output results");
+  command->callback([&] { chosen = [&] { return run_stress_command(common, o); }; });
+}
+
 void add_figures(CLI::App& app, const CommonOptions& common, FiguresOptions& o,
                  std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("figures", "Computes and plots the figures (needs gnuplot)");
   command
-      ->add_option("NAMES", o.names,
-                   "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs or a method's "
-                   "name (default: all)")
+      ->add_option(
+          "NAMES", o.names,
+          "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs, stress or a method's "
+          "name (default: all)")
       ->type_name("");
   command->add_flag("--quick", o.quick, "fewer simulated cells, smaller cloths");
   command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
@@ -282,6 +304,7 @@ int run_command(int argc, const char* const* argv) {
   WorkPrecisionOptions precision;
   precision.plots = SPRINGSTAB_PLOTS_DIR;
   DivergenceOptions divergence;
+  StressOptions stress;
   FiguresOptions figures{.names = {}, .plots = SPRINGSTAB_PLOTS_DIR, .output = "paper_figures"};
   std::string damping = "own", precision_damping = "own", hessian = "exact", solver = "cg";
   std::function<int()> chosen;
@@ -307,6 +330,7 @@ int run_command(int argc, const char* const* argv) {
   add_complexity(app, common, complexity, chosen);
   add_work_precision(app, common, precision, precision_damping, chosen);
   add_divergence(app, common, divergence, chosen);
+  add_stress(app, common, stress, chosen);
   add_figures(app, common, figures, chosen);
 
   try {

@@ -103,6 +103,13 @@ struct DivergenceOptions {
 };
 int run_divergence(const CommonOptions& common, const DivergenceOptions& options);
 
+/// `springstab stress`: stiff, extreme and hostile cases by every method, against what is expected of them.
+struct StressOptions {
+  std::string filter;  // part of a case's class or name, empty for all
+  std::string output;  // folder, empty for none
+};
+int run_stress_command(const CommonOptions& common, const StressOptions& options);
+
 /// `springstab figures`: computes and plots.
 struct FiguresOptions {
   std::vector<std::string> names;  // empty for all

@@ -24,5 +24,6 @@ std::vector<Figure> drape_figures();   // the paper's Fig. 4, frames over time, 
 std::vector<Figure> timing_figures();  // its Figs. 5 to 7
 std::vector<Figure> divergence_figures();
 std::vector<Figure> precision_figures();  // error against run time, long runs
+std::vector<Figure> stress_figures();
 
 }  // namespace springstab

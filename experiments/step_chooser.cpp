@@ -15,6 +15,7 @@ constexpr double default_max_step = 0.01;  // [s], where nothing limits the step
 constexpr double tight_watch = 3;          // times the speed that energy conservation allows
 constexpr double tight_gain = 1;           // times the energy that all of that speed would be
 constexpr double quick_tolerance = 1e-4;   // of k0 on the way: far below what the safety factor covers
+constexpr Eigen::Index large = 30000;      // unknowns: from there on it is quick at the start, too
 constexpr long patience = 20, progress = 10;
 constexpr double hopeless = 1e-6;  // of the first step
 
@@ -81,9 +82,14 @@ StepPlan StepChooser::plan(double largest_step, double duration) {
   return result;
 }
 
+StiffestMode StepChooser::first_k0() {
+  const double tolerance = subject_.system().size() < large ? 1e-10 : quick_tolerance;
+  return k0_at(subject_.initial_state(common_.seed), tolerance);
+}
+
 std::optional<StepPlan> StepChooser::first_plan() {
   if (options_.step) return plan(*options_.step, options_.duration);
-  return first_plan(k0_at(subject_.initial_state(common_.seed), 1e-10));
+  return first_plan(first_k0());
 }
 
 std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {

@@ -29,7 +29,9 @@ class StepChooser {
 
   /// Nothing where there is no stable step or none is known; reason() then says which.
   std::optional<StepPlan> first_plan();
-  /// The same for a k0 that is known already.
+  /// k0 of the start, estimated; of a large system no more precisely than the safety factor needs.
+  StiffestMode first_k0();
+  /// The same plan for a k0 that is known already.
   std::optional<StepPlan> first_plan(const StiffestMode& k0);
   const std::string& reason() const { return reason_; }
 

@@ -41,11 +41,13 @@ struct Checkpoint {
 }  // namespace
 
 bool EnergyWatch::diverged(double kinetic_energy, double t) const {
+  if (initial_energy < 0) return !std::isfinite(kinetic_energy);
   const double bound = std::sqrt(initial_energy) + gravity * std::sqrt(mass / 2) * t;
   return !(std::sqrt(kinetic_energy) <= slack * bound);
 }
 
 bool EnergyWatch::gained(double total_energy, double t) const {
+  if (initial_energy < 0) return false;
   const double bound = std::sqrt(initial_energy) + gravity * std::sqrt(mass / 2) * t;
   return !(total_energy - initial_total <= largest_gain * bound * bound);
 }

@@ -26,7 +26,8 @@ struct StepPlan {
 /// themselves, near a double eigenvalue by a factor of hundreds; a diverging run grows without bound.)
 /// The total energy never grows; a run that has gained `largest_gain` times B(t) is about to diverge. That
 /// takes an evaluation of the energy, so it is asked at checkpoints only, and not at all where nothing limits
-/// the gain.
+/// the gain. A negative E0 shows a system that is not passive, whose motion may grow as it likes: then only
+/// what is not finite has diverged.
 struct EnergyWatch {
   double initial_energy = 0;  // E0 [J]
   double gravity = 0;         // g [m/s²]

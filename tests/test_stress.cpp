@@ -1,0 +1,81 @@
+// Stiff, extreme and hostile cases: what is cheap of the catalogue comes out as expected, and what does not
+// is noticed.
+#include <boost/test/unit_test.hpp>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "experiments/stress/stress.h"
+
+using namespace springstab;
+
+namespace {
+
+const CommonOptions quiet{.quiet = true};
+
+}  // namespace
+
+BOOST_AUTO_TEST_SUITE(stress)
+
+BOOST_AUTO_TEST_CASE(the_catalogue_has_cases_of_every_class_and_no_case_twice) {
+  std::set<std::string> names, kinds;
+  for (const StressCase& c : stress_catalogue()) {
+    BOOST_TEST(names.insert(c.kind + c.name).second, c.kind << ", " << c.name << " is there twice");
+    kinds.insert(c.kind);
+  }
+  BOOST_TEST(names.size() >= 60u);
+  BOOST_TEST(kinds.size() >= 9u);
+}
+
+BOOST_AUTO_TEST_CASE(cheap_cases_come_out_as_expected) {
+  for (const char* filter :
+       {"stiffness, ", "time unit", "structure", "mesh, ", "scene, s", "damping, c", "1.001 h_max, a"}) {
+    const std::vector<StressResult> results = run_catalogue(filter, quiet);
+    BOOST_TEST(!results.empty());
+    for (const StressResult& r : results)
+      BOOST_TEST(r.as_expected(), r.kind << ", " << r.name << ", " << r.method << ": expected "
+                                         << name(r.expected) << ", came out " << name(r.outcome) << ": "
+                                         << r.detail);
+  }
+}
+
+// An expectation that fails is told; and what the error is measured by: half the time unit is another motion.
+BOOST_AUTO_TEST_CASE(a_wrong_expectation_is_noticed) {
+  const std::string folder = std::filesystem::temp_directory_path();
+  for (StressCase c : stress_catalogue()) {
+    if (c.name != "k = 1") continue;
+    c.expected = {StressOutcome::refused};
+    std::optional<StiffestMode> k0;
+    const StressResult result = run_stress(c, "rk4", folder, quiet, k0);
+    BOOST_TEST(!result.as_expected());
+    BOOST_TEST((result.outcome == StressOutcome::right));
+    BOOST_REQUIRE(result.error);
+    BOOST_TEST(*result.error > 0);
+    BOOST_TEST(*result.error < 1e-6);  // (√k h)⁴ is 1e-7
+  }
+}
+
+// Steps of 1/100 of the motion in any unit of time: the same run, to rounding.
+BOOST_AUTO_TEST_CASE(a_time_unit_changes_no_error) {
+  const std::vector<StressResult> results = run_catalogue("time unit", quiet);
+  const std::size_t methods = all_methods().size();
+  for (std::size_t i = methods; i < results.size(); ++i) {
+    const StressResult &first = results[i % methods], &other = results[i];
+    BOOST_TEST(other.steps == first.steps);
+    BOOST_TEST(std::abs(*other.error - *first.error) <= 1e-9);
+  }
+}
+
+// A negative energy at the start shows that the structure itself grows: that is no divergence.
+BOOST_AUTO_TEST_CASE(the_watch_leaves_a_structure_that_grows_by_itself) {
+  const EnergyWatch passive{.initial_energy = 1, .largest_gain = 1},
+      active{.initial_energy = -1, .largest_gain = 1};
+  BOOST_TEST(passive.diverged(1e7, 1));
+  BOOST_TEST(!active.diverged(1e7, 1));
+  BOOST_TEST(active.diverged(INFINITY, 1));
+  BOOST_TEST(active.diverged(NAN, 1));
+  BOOST_TEST(passive.gained(3, 1));
+  BOOST_TEST(!active.gained(3, 1));
+}
+
+BOOST_AUTO_TEST_SUITE_END()

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "analysis/spectrum.h"
+#include "analysis/step_magnitude.h"
 #include "analysis/transition_operator.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/stepper.h"
@@ -76,7 +77,7 @@ LyapunovSteps::LyapunovSteps(const StructuralMatrices& s) {
 
 bool LyapunovSteps::proves(std::string_view method, double h) const {
   const Eigen::Index n = stiffness_.rows();
-  if (n == 0 || find_method(method).implicit || !(stiffness_.diagonal().minCoeff() > 0)) return false;
+  if (n == 0 || !(stiffness_.diagonal().minCoeff() > 0)) return false;
   // In units of √k and of h the energy of each mode is ‖w‖², and A is not far from normal.
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(2 * n);
   scale.head(n) = h * stiffness_.diagonal().cwiseSqrt();
@@ -84,9 +85,9 @@ bool LyapunovSteps::proves(std::string_view method, double h) const {
     return scale.asDiagonal() * a * scale.cwiseInverse().asDiagonal();
   };
   const Matrix a = scaled(transition_matrix(h * h * stiffness_, h * damping_, method));
-  // The same step with all that it sums up counted positively bounds its rounding, entry by entry.
-  const Matrix b =
-      rounding_ * scaled(transition_matrix(-h * h * stiffness_size_, -h * damping_size_, method));
+  const std::optional<Matrix> size = step_magnitude(method, h * h * stiffness_size_, h * damping_size_);
+  if (!size) return false;
+  const Matrix b = rounding_ * scaled(*size);  // bounds the rounding of a, entry by entry
   const Matrix p = lyapunov_matrix(a);
   if (!is_definite(p, Eigen::VectorXd::Zero(2 * n))) return false;
 

@@ -21,7 +21,8 @@ class LyapunovSteps {
   explicit LyapunovSteps(const StructuralMatrices& s);
 
   /// Whether a step of h is proved to be stable, in spite of the rounding of A, of P - AᵀPA and of the
-  /// Cholesky factorizations. It takes K positive definite but for rigid motions, and an explicit method.
+  /// Cholesky factorizations. It takes K positive definite but for rigid motions, and a method with a
+  /// step_magnitude.
   bool proves(std::string_view method, double h) const;
 
   /// The first step proved of those that fall from `h_max`, the true limit, by growing gaps to `least`;

@@ -13,6 +13,7 @@
 #include "analysis/general_damping.h"
 #include "analysis/generator_spectrum.h"
 #include "analysis/rigid_motions.h"
+#include "analysis/step_magnitude.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/scene/every_pose.h"
 #include "solvers/stepper.h"
@@ -280,6 +281,36 @@ BOOST_AUTO_TEST_CASE(a_lyapunov_matrix_proves_what_polygons_do_not) {
     BOOST_TEST(shares[10] >= 0.9);
     BOOST_TEST(shares[100] >= 0.999);
   }
+}
+
+// Nothing that a step computes exceeds what it adds up; explicit Euler's is [[1, 1], [|K|, 1 + |D|]].
+BOOST_AUTO_TEST_CASE(the_magnitude_of_a_step_bounds_its_transition_matrix) {
+  std::mt19937_64 engine(4);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  constexpr Eigen::Index n = 4;
+  const auto symmetric = [&] {
+    const Eigen::MatrixXd a = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return uniform(engine); });
+    return Eigen::MatrixXd(a + a.transpose());
+  };
+  int bounded = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::MatrixXd k = symmetric(), d = symmetric();
+    const StructuralMatrices s{.stiffness = k.sparseView(0.0, 0.0),
+                               .mass = Eigen::MatrixXd::Identity(n, n).sparseView(),
+                               .damping = d.sparseView(0.0, 0.0)};
+    for (const MethodInfo& info : all_methods())
+      if (const auto magnitude = step_magnitude(info.name, k, d)) {
+        const Eigen::MatrixXd a = transition_matrix(s, info.name, 1);
+        BOOST_TEST((a.cwiseAbs().array() <= magnitude->array() * (1 + 1e-14)).all());
+        ++bounded;
+      }
+    const Eigen::MatrixXd euler = step_magnitude("explicit-euler", k, d).value();
+    BOOST_TEST((euler.bottomLeftCorner(n, n) == k.cwiseAbs()));
+    BOOST_TEST((euler.bottomRightCorner(n, n) - Eigen::MatrixXd::Identity(n, n)).isApprox(d.cwiseAbs()));
+    BOOST_TEST(euler.topRows(n).sum() == 2 * n);
+  }
+  BOOST_TEST(bounded >= 20 * 4);
+  BOOST_TEST(!step_magnitude("implicit-euler", symmetric(), symmetric()));
 }
 
 BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {

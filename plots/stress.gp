@@ -33,8 +33,8 @@ set format x ''
 unset key
 do for [column = 0:columns - 1] {
     first = column * rows
-    set lmargin at screen (column + 0.60) / columns
-    set rmargin at screen (column + 0.90) / columns
+    set lmargin at screen (column + 0.59) / columns
+    set rmargin at screen (column + 0.88) / columns
     set tmargin at screen top
     set bmargin at screen bottom
     do for [i = 0:methods - 1] {

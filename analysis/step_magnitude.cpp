@@ -14,7 +14,7 @@ struct Magnitude {
 
   bool allFinite() const { return entries.allFinite(); }
   friend Magnitude operator+(const Magnitude& a, const Magnitude& b) { return {a.entries + b.entries}; }
-  friend Magnitude operator-(const Magnitude& a, const Magnitude& b) { return a + b; }
+  [[maybe_unused]] friend Magnitude operator-(const Magnitude& a, const Magnitude& b) { return a + b; }
   friend Magnitude operator*(double factor, const Magnitude& a) { return {std::abs(factor) * a.entries}; }
 };
 

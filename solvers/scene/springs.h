@@ -66,7 +66,7 @@ class ParticlePairs {
   void gather_from(const At& at, int begin, Vectors& out) const;
   std::span<const Run> runs(int begin) const {
     const int batch = begin / batch_size;
-    return {&runs_[run_start_[batch]], &runs_[run_start_[batch + 1]]};
+    return {runs_.data() + run_start_[batch], runs_.data() + run_start_[batch + 1]};
   }
 
   /// Where the block that a pair of i and another particle stands for is in row i of a matrix; -1 if it lies

@@ -15,6 +15,7 @@
 #include "analysis/rigid_motions.h"
 #include "analysis/step_magnitude.h"
 #include "solvers/io/matrix_file.h"
+#include "solvers/methods/explicit_runge_kutta.h"
 #include "solvers/scene/every_pose.h"
 #include "solvers/stepper.h"
 #include "tests/random_nets.h"
@@ -311,6 +312,29 @@ BOOST_AUTO_TEST_CASE(the_magnitude_of_a_step_bounds_its_transition_matrix) {
   }
   BOOST_TEST(bounded >= 20 * 4);
   BOOST_TEST(!step_magnitude("implicit-euler", symmetric(), symmetric()));
+}
+
+// Kutta's third-order method has a coefficient of -1, and a step may subtract: with K = 0, D = 1 the sizes
+// are v2 = 3/2, v3 = 1 + 1 + 2·3/2 = 5, v = 1 + (1 + 4·3/2 + 5)/6 = 3; a difference 1 - ½·1 counts as 3/2.
+template <class V>
+struct Kutta
+    : ExplicitRungeKutta<V, ExplicitTableau<3>{.a = {{{}, {0.5}, {-1, 2}}}, .b = {1. / 6, 2. / 3, 1. / 6}}> {
+};
+
+template <class V>
+struct Subtracting {
+  StepStatus step(MagnitudeSystem& system, double h, State<V>& state) {
+    V a{}, x = state.x;
+    system.acceleration(state.x, state.v, a);
+    V v = state.v - (0.5 * h) * a;
+    return commit(state, x, v);
+  }
+};
+
+BOOST_AUTO_TEST_CASE(magnitudes_do_not_cancel) {
+  MagnitudeSystem system{Eigen::MatrixXd::Zero(1, 1), Eigen::MatrixXd::Ones(1, 1)};
+  BOOST_TEST((*magnitude<Kutta<Magnitude>>(system))(1, 1) == 3, boost::test_tools::tolerance(1e-15));
+  BOOST_TEST((*magnitude<Subtracting<Magnitude>>(system))(1, 1) == 1.5);
 }
 
 BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {

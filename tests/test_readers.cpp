@@ -6,6 +6,7 @@
 #include <fstream>
 #include <locale>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "solvers/io/matrix_file.h"
 #include "solvers/io/obj.h"
 #include "solvers/io/text_file.h"
+#include "tests/fuzz/readers.h"
 #include "tests/shared_data.h"
 
 using springstab::InputError;
@@ -50,6 +52,12 @@ auto read_text(const Read& read, const std::string& text, const std::string& suf
 Mesh obj(const std::string& text) { return read_text(read_obj, text); }
 
 Eigen::MatrixXd matrix(const std::string& text) { return read_text(read_matrix, text).toDense(); }
+
+std::string contents(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
 
 /// A file that must be refused: in which line, and with which words.
 struct Malformed {
@@ -398,6 +406,28 @@ BOOST_AUTO_TEST_CASE(a_file_of_no_known_format_is_refused) {
                   {{"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 1, "neither"}, {"1 2\n3 4\n", 1, "neither"}});
   check_refused(read_matrix, ".MTX", {{"1 2\n3 4\n", 1, "no Matrix Market banner"}});
   check_refused(read_matrix, ".rb", {{"1 2\n3 4\n", 2, "2 numbers of lines"}});
+}
+
+BOOST_AUTO_TEST_CASE(every_beginning_of_every_seed_reads_or_is_refused_with_a_line) {
+  for (const springstab::test::Reader& reader : springstab::test::readers()) {
+    long read = 0, refused = 0;
+    for (const auto& seed :
+         std::filesystem::directory_iterator(SPRINGSTAB_SOURCE_DIR "/tests/fuzz/corpus/" + reader.name)) {
+      BOOST_TEST_CONTEXT(seed.path()) {
+        const std::string text = contents(seed.path());
+        for (std::size_t length = 0; length < text.size(); ++length)
+          BOOST_REQUIRE_NO_THROW(++(reads(reader, text.substr(0, length)) ? read : refused));
+        const bool whole = reads(reader, text);
+        BOOST_TEST(reads(reader, with_crlf(text)) == whole);
+        BOOST_TEST(reads(reader, "\xEF\xBB\xBF" + text) == whole);
+        ++(whole ? read : refused);
+      }
+    }
+    BOOST_TEST_CONTEXT(reader.name) {
+      BOOST_TEST(read > 2);
+      BOOST_TEST(refused > 100);
+    }
+  }
 }
 
 BOOST_AUTO_TEST_CASE(what_is_read_does_not_depend_on_the_locale) {

@@ -49,7 +49,7 @@ SceneDescription hung_cloth(double alpha = 1e-3) {
   SceneDescription description;
   description.geometry = Grid{4, 4};
   description.material = material;
-  description.pins = {.kind = Pins::Kind::first_row, .indices = {}, .source = "test"};
+  description.pins = {.kind = Pins::Kind::first_row, .ranges = {}, .source = "test"};
   description.damping = {.d0 = 1, .alpha = alpha};
   description.initial.stretch = {1, 1, 1.1};
   return description;

@@ -11,7 +11,7 @@ struct Drape {
   int side = 16;
   double stiffness_factor = 1;  // on every elastic coefficient: K and k0 are proportional to it
   Material material = ClothMaterial{.particle_mass = 1.25e-4};
-  Pins pins{.kind = Pins::Kind::first_row, .indices = {}, .source = "drape"};
+  Pins pins{.kind = Pins::Kind::first_row, .ranges = {}, .source = "drape"};
   RayleighDescription damping{.d0 = 10, .alpha = std::nullopt};  // alpha fitted to the step
 };
 

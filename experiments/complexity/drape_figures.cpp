@@ -13,7 +13,7 @@ constexpr double settled = 1, strip_duration = 0.4;  // [s]
 constexpr int strip_frames = 5;                      // after the first
 
 Pins corners_of_first_row(int side) {
-  return {.kind = Pins::Kind::indices, .indices = {0, side - 1}, .source = "drape"};
+  return {.kind = Pins::Kind::indices, .ranges = {{0, 0}, {side - 1, side - 1}}, .source = "drape"};
 }
 
 // The paper's cloth, held in its middle by a disc as by a round table, so that it folds.
@@ -23,7 +23,8 @@ Drape tablecloth(int side) {
   const double middle = (side - 1) / 2., radius = 0.25 * side;
   for (int i = 0; i < side; ++i)
     for (int j = 0; j < side; ++j)
-      if (std::hypot(i - middle, j - middle) <= radius) drape.pins.indices.push_back(i * side + j);
+      if (std::hypot(i - middle, j - middle) <= radius)
+        drape.pins.ranges.push_back({i * side + j, i * side + j});
   return drape;
 }
 

@@ -30,7 +30,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string expected_one_of(const std::string& word, const std::vector<std::string_view>& known) {
   std::string text = "expected ";
   std::string_view nearest;
-  std::size_t least = word.size() / 2 + 1;  // farther than that is no misspelling
+  // Farther than that is no misspelling, and neither is a word of any length.
+  std::size_t least = word.size() < 100 ? word.size() / 2 + 1 : 0;
   for (std::size_t k = 0; k < known.size(); ++k) {
     text += (k == 0 ? "" : k + 1 < known.size() ? ", " : " or ") + springstab::quoted(known[k]);
     const std::size_t distance = edit_distance(word, known[k]);

@@ -1,6 +1,7 @@
 // The notation for pinned particles: none, first-row, corners, or indices and ranges such as 0,5-9.
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "experiments/input/scene_description.h"
 #include "solvers/io/input_error.h"
@@ -26,6 +27,17 @@ bool take(std::string_view& text, char c) {
 
 }  // namespace
 
+std::vector<Range> merged(std::vector<Range> ranges) {
+  std::ranges::sort(ranges, {}, &Range::first);
+  std::vector<Range> apart;
+  for (const Range& range : ranges)
+    if (apart.empty() || apart.back().last < range.first - 1)
+      apart.push_back(range);
+    else
+      apart.back().last = std::max(apart.back().last, range.last);
+  return apart;
+}
+
 Pins parse_pins(const std::string& text, const std::string& source, long line) {
   const auto pins = [&](Pins::Kind kind) { return Pins{kind, {}, source, line}; };
   if (text == "none") return pins(Pins::Kind::none);
@@ -42,10 +54,9 @@ Pins parse_pins(const std::string& text, const std::string& source, long line) {
                        "unusable pins " + springstab::quoted(text) + ", " +
                            expected_one_of(text, {"none", "first-row", "corners", "0,5-9"}) +
                            ", ranges upwards, below " + std::to_string(max_particles));
-    for (int index = first; index <= last; ++index) chosen.indices.push_back(index);
+    chosen.ranges.push_back({first, last});
   } while (take(rest, ','));
-  std::sort(chosen.indices.begin(), chosen.indices.end());
-  chosen.indices.erase(std::unique(chosen.indices.begin(), chosen.indices.end()), chosen.indices.end());
+  chosen.ranges = merged(std::move(chosen.ranges));
   return chosen;
 }
 

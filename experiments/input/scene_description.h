@@ -14,12 +14,18 @@
 
 namespace springstab {
 
+/// The particles from first to last, both among them.
+struct Range {
+  int first, last;
+  bool operator==(const Range&) const = default;
+};
+
 /// Which particles are held fast.
 struct Pins {
   enum class Kind { none, first_row, corners, indices };
   Kind kind = Kind::none;
-  std::vector<int> indices;  // for Kind::indices, from 0, sorted, without repeats
-  std::string source;        // where it was written, for messages ("--pin" or the scene file)
+  std::vector<Range> ranges;  // for Kind::indices, from 0, ascending, none overlaps another
+  std::string source;         // where it was written, for messages ("--pin" or the scene file)
   long line = 0;
 };
 
@@ -51,6 +57,9 @@ struct SceneDescription {
   InitialDescription initial;
 };
 
+/// The same particles by ascending ranges that are apart from each other.
+std::vector<Range> merged(std::vector<Range> ranges);
+
 /// "none", "first-row", "corners" or "0,5-9". Throws InputError(source, line, ...) for anything else.
 Pins parse_pins(const std::string& text, const std::string& source, long line);
 
@@ -61,9 +70,12 @@ Material named_material(const std::string& name, const std::string& source, long
 /// "expected 'soft' or 'stiff' (did you mean 'soft'?)", the nearest word only if it is near.
 std::string expected_one_of(const std::string& word, const std::vector<std::string_view>& known);
 
-/// Reads a scene file (JSON; the schema stands in the README). Paths in it are relative to the file.
-/// Throws InputError with the line for syntax errors, unknown, duplicate or missing keys, wrong types,
-/// values out of range.
+/// Parses a scene (JSON; the schema stands in the README). Paths in it are relative to the file `source`;
+/// they are not opened. Throws InputError with the line for syntax errors, unknown, duplicate or missing
+/// keys, wrong types, values out of range.
+SceneDescription parse_scene(const std::string& source, std::string_view text);
+
+/// The same of a file.
 SceneDescription read_scene_file(const std::string& path);
 
 }  // namespace springstab

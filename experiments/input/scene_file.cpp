@@ -20,7 +20,7 @@ namespace {
 struct Json {
   enum class Kind { literal, number, string, array, object };
   Kind kind = Kind::literal;
-  std::string text;   // of a string; of a number or literal as it was written
+  std::string text;   // of a string; of a number (shortened) or literal as it was written
   double number = 0;  // finite
   std::string key{};  // of an object's member
   long key_line = 0;
@@ -70,7 +70,7 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return add(Json::Kind::number, std::to_string(value), static_cast<double>(value));
   }
   bool number_float(number_float_t value, const string_t& text) override {
-    return add(Json::Kind::number, text, value);
+    return add(Json::Kind::number, shortened(text), value);
   }
   bool string(string_t& text) override { return add(Json::Kind::string, text); }
   bool binary(binary_t&) override { return false; }  // not in JSON text
@@ -88,9 +88,11 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   bool parse_error(std::size_t, const std::string& last_token,
                    const nlohmann::json::exception& error) override {
     if (dynamic_cast<const nlohmann::json::out_of_range*>(&error))
-      fail("the number " + last_token + " is out of range, expected a finite one");
+      fail("the number " + shortened(last_token) + " is out of range, expected a finite one");
     std::string reason = error.what();  // "[id] parse error at ...: syntax error while parsing ... - reason"
     if (const auto dash = reason.find(" - "); dash != std::string::npos) reason.erase(0, dash + 3);
+    if (const auto token = reason.find('\'' + last_token + '\''); token != std::string::npos)
+      reason.replace(token, last_token.size() + 2, springstab::quoted(last_token));
     std::replace(reason.begin(), reason.end(), ';', ',');
     // "unexpected end of input" alone does not say what was expected.
     if (reason.find("expected ", reason.find(' ')) == std::string::npos)
@@ -99,6 +101,10 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
+  static std::string shortened(const std::string& number) {
+    return number.size() > 40 ? number.substr(0, 40) + "..." : number;
+  }
+
   [[noreturn]] void fail(const std::string& message) const { throw InputError(source_, line_, message); }
 
   bool add(Json::Kind kind, std::string text, double number = 0) {
@@ -141,10 +147,14 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
   long key_line_ = 0;
 };
 
-Json read_json(const std::string& path) {
-  const std::string text = read_text_file(path);
+Json parse_json(const std::string& source, std::string_view text) {
+  constexpr std::size_t most = std::size_t{1} << 24;  // two bytes can become a value of 150
+  if (text.size() > most)
+    throw InputError(source, 0,
+                     "a scene of " + std::to_string(text.size()) +
+                         " bytes, expected at most 16 MB; pins can be ranges such as \"0-999\"");
   long line = 1;
-  TreeBuilder builder(path, line);
+  TreeBuilder builder(source, line);
   nlohmann::json::sax_parse(LineCounter(text.data(), &line), LineCounter(text.data() + text.size(), &line),
                             &builder);
   return builder.take_root();
@@ -154,7 +164,7 @@ Json read_json(const std::string& path) {
 
 class SceneReader {
  public:
-  explicit SceneReader(const std::string& path) : source_(path) {}
+  explicit SceneReader(const std::string& source) : source_(source) {}
 
   SceneDescription scene(const Json& json) const {
     expect_members(json, {"geometry", "material", "pins", "gravity", "damping", "initial"});
@@ -356,9 +366,11 @@ class SceneReader {
     if (json.kind == Json::Kind::string) return parse_pins(json.text, source_, json.line);
     if (json.kind != Json::Kind::array) wrong(json, "a string such as 'first-row' or an array of indices");
     Pins pins{Pins::Kind::indices, {}, source_, json.line};
-    for (const Json& item : json.items) pins.indices.push_back(integer(item, 0, max_particles - 1));
-    std::sort(pins.indices.begin(), pins.indices.end());
-    pins.indices.erase(std::unique(pins.indices.begin(), pins.indices.end()), pins.indices.end());
+    for (const Json& item : json.items) {
+      const int index = integer(item, 0, max_particles - 1);
+      pins.ranges.push_back({index, index});
+    }
+    pins.ranges = merged(std::move(pins.ranges));
     return pins;
   }
 
@@ -390,6 +402,10 @@ class SceneReader {
 
 }  // namespace
 
-SceneDescription read_scene_file(const std::string& path) { return SceneReader(path).scene(read_json(path)); }
+SceneDescription parse_scene(const std::string& source, std::string_view text) {
+  return SceneReader(source).scene(parse_json(source, text));
+}
+
+SceneDescription read_scene_file(const std::string& path) { return parse_scene(path, read_text_file(path)); }
 
 }  // namespace springstab

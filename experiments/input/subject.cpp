@@ -33,15 +33,17 @@ std::vector<std::vector<int>> grid_faces(const Grid& grid) {
 std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles) {
   const auto wrong = [&](const std::string& message) { return InputError(pins.source, pins.line, message); };
   if (pins.kind == Pins::Kind::none) return {};
+  std::vector<int> numbers;
   if (pins.kind == Pins::Kind::indices) {
-    if (!pins.indices.empty() && pins.indices.back() >= particles)
-      throw wrong("pinned particle " + std::to_string(pins.indices.back()) +
+    if (!pins.ranges.empty() && pins.ranges.back().last >= particles)
+      throw wrong("pinned particle " + std::to_string(pins.ranges.back().last) +
                   " does not exist, expected 0 to " + std::to_string(particles - 1));
-    return pins.indices;
+    for (const Range& range : pins.ranges)
+      for (int i = range.first; i <= range.last; ++i) numbers.push_back(i);
+    return numbers;
   }
   if (!grid)
     throw wrong("'first-row' and 'corners' are places on a grid, expected particle numbers for a mesh");
-  std::vector<int> numbers;
   if (pins.kind == Pins::Kind::first_row) {
     for (int j = 0; j < grid->columns; ++j) numbers.push_back(j);
   } else {

@@ -32,13 +32,13 @@ SceneDescription net(int rows, int columns, const PerKind& stiffness, double fac
   return scene;
 }
 
-Pins pins(Pins::Kind kind) { return {.kind = kind, .indices = {}, .source = "scene"}; }
+Pins pins(Pins::Kind kind) { return {.kind = kind, .ranges = {}, .source = "scene"}; }
 
 Pins rim(int side) {
-  Pins pins{.kind = Pins::Kind::indices, .indices = {}, .source = "scene"};
+  Pins pins{.kind = Pins::Kind::indices, .ranges = {}, .source = "scene"};
   for (int p = 0; p < side * side; ++p)
     if (p < side || p >= side * (side - 1) || p % side == 0 || p % side == side - 1)
-      pins.indices.push_back(p);
+      pins.ranges.push_back({p, p});
   return pins;
 }
 

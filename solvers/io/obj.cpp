@@ -118,13 +118,12 @@ void check_indices(const Mesh& mesh, const std::vector<int>& textures, std::size
 
 }  // namespace
 
-Mesh read_obj(const std::string& path) {
-  const std::string text = read_text_file(path);
+Mesh parse_obj(const std::string& source, std::string_view text) {
   if (text.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw InputError(path, 0,
+    throw InputError(source, 0,
                      "the file has more than 2^31 - 1 bytes, expected a smaller mesh");  // indices are int
   Mesh mesh;
-  mesh.source = path;
+  mesh.source = source;
   LineReader lines(mesh.source, text);
   Words words;
   std::vector<Eigen::Vector2d> textures;  // of the file
@@ -154,12 +153,14 @@ Mesh read_obj(const std::string& path) {
               ", expected one of Wavefront OBJ's such as v, f, vt or g");
     }
   }
-  if (mesh.vertices.empty()) throw InputError(path, 0, "no vertices, expected lines such as 'v 0 0 0'");
-  if (mesh.faces() == 0) throw InputError(path, 0, "no faces, expected lines such as 'f 1 2 3'");
+  if (mesh.vertices.empty()) throw InputError(source, 0, "no vertices, expected lines such as 'v 0 0 0'");
+  if (mesh.faces() == 0) throw InputError(source, 0, "no faces, expected lines such as 'f 1 2 3'");
   check_indices(mesh, corner_textures, textures.size());
   if (std::ranges::find(corner_textures, -1) == corner_textures.end())
     for (const int texture : corner_textures) mesh.corner_uv.push_back(textures[texture]);
   return mesh;
 }
+
+Mesh read_obj(const std::string& path) { return parse_obj(path, read_text_file(path)); }
 
 }  // namespace springstab

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <locale>
 #include <stdexcept>
 
 #include "solvers/io/input_error.h"
@@ -34,24 +35,33 @@ std::string text(const char* format, ...) {
   return result;
 }
 
-OutputFile::OutputFile(const std::string& path)
-    : path_(path), aside_(path + ".part" + std::to_string(getpid())), stream_(aside_) {
+OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_regular_file(status) && fs::is_symlink(path)) target_ = fs::canonical(path).string();
+  const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
+  aside_ = in_place ? target_ : target_ + ".part" + std::to_string(getpid());
+  stream_.open(aside_);
   if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
+  stream_.imbue(std::locale::classic());
   stream_.precision(17);
 }
 
 OutputFile::~OutputFile() {
-  if (committed_) return;
+  if (committed_ || aside_ == target_) return;
   stream_.close();
   std::error_code ignored;
   std::filesystem::remove(aside_, ignored);
 }
 
 void OutputFile::commit() {
+  errno = 0;
   stream_.close();
-  if (!stream_) throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno));
+  if (!stream_)
+    throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno ? errno : EIO));
   std::error_code error;
-  std::filesystem::rename(aside_, path_, error);
+  std::filesystem::rename(aside_, target_, error);
   if (error) throw InputError(path_, 0, "cannot be written: " + error.message());
   committed_ = true;
 }

@@ -19,7 +19,8 @@ Json number(const std::optional<double>& value);
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...);
 
-/// A file that appears whole or not at all: written beside its place and renamed by commit().
+/// A file that appears whole or not at all: written beside its place and renamed by commit(). A pipe or a
+/// device is written to as it is.
 class OutputFile {
  public:
   /// Throws InputError if the file cannot be created.
@@ -33,7 +34,7 @@ class OutputFile {
   void commit();
 
  private:
-  std::string path_, aside_;
+  std::string path_, target_, aside_;  // as given; what is written in the end; until then
   std::ofstream stream_;
   bool committed_ = false;
 };

@@ -1,8 +1,4 @@
 // The command as people and programs use it: run as a process, judged by its exit status, stdout and files.
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <array>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <cstdio>
@@ -12,56 +8,15 @@
 #include <sstream>
 #include <string>
 
+#include "tests/command.h"
+
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+using springstab::test::Command;
+using springstab::test::lines;
+using springstab::test::Outcome;
 
 namespace {
-
-struct Outcome {
-  int status;
-  std::string out, err;
-
-  Json json() const { return Json::parse(out); }
-};
-
-// A folder of its own per test case, removed at the end.
-class Command {
- public:
-  Command() : folder_(fs::temp_directory_path() / ("springstab command " + std::to_string(getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Command() { fs::remove_all(folder_); }
-
-  fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name) << content;
-    return folder_ / name;
-  }
-  fs::path folder() const { return folder_; }
-
-  Outcome operator()(const std::string& arguments) const {
-    const fs::path err = folder_ / "stderr";
-    const std::string line = "cd '" + folder_.string() + "' && '" SPRINGSTAB_COMMAND "' " + arguments +
-                             " 2>'" + err.string() + "'";
-    FILE* pipe = popen(line.c_str(), "r");
-    BOOST_REQUIRE(pipe);
-    Outcome outcome{};
-    std::array<char, 4096> buffer;
-    while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-      outcome.out.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    BOOST_REQUIRE(WIFEXITED(status));
-    outcome.status = WEXITSTATUS(status);
-    std::ostringstream text;
-    text << std::ifstream(err).rdbuf();
-    outcome.err = text.str();
-    fs::remove(err);
-    return outcome;
-  }
-
- private:
-  fs::path folder_;
-};
 
 // Name -> entry of a list of methods.
 Json by_name(const Json& list, const std::string& name) {
@@ -70,8 +25,6 @@ Json by_name(const Json& list, const std::string& name) {
   BOOST_FAIL("no method " + name);
   return {};
 }
-
-long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 bool close(const Json& value, double expected, double tolerance = 1e-9) {
   return value.is_number() && std::abs(value.get<double>() - expected) <= tolerance * std::abs(expected);

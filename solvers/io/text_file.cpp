@@ -1,11 +1,16 @@
 #include "solvers/io/text_file.h"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <system_error>
 
@@ -23,20 +28,51 @@ std::string_view without_plus(std::string_view word) {
   return plus ? word.substr(1) : word;
 }
 
+/// A named pipe that nobody has opened for writing would read as empty. One who waits for its reader gets a
+/// second to come; from then on reading blocks, however slow the writer.
+void wait_for_writer(int pipe) {
+  pollfd readable{pipe, POLLIN, 0};
+  poll(&readable, 1, 1000);
+  fcntl(pipe, F_SETFL, 0);
+}
+
 }  // namespace
 
 std::string read_text_file(const std::string& path) {
-  const auto fail = [&path](const char* what, int error) {
-    throw InputError(path, 0,
-                     what + (" (" + std::generic_category().message(error)) + "), expected a text file");
+  const auto refuse = [&path](const std::string& why) {
+    throw InputError(path, 0, why + ", expected a text file");
   };
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  if (!file) fail("cannot be opened", errno);
+  const auto fail = [&](const char* what, int error) {
+    refuse(what + (" (" + std::generic_category().message(error)) + ')');
+  };
+  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<int>::max());
+  const auto check_size = [&](std::size_t bytes) {
+    if (bytes > most) refuse("has more than 2^31 - 1 bytes");
+  };
+
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) fail("cannot be opened", errno);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(fdopen(descriptor, "rb"), std::fclose);
+  struct stat status = {};
+  if (!file || fstat(descriptor, &status) != 0) fail("cannot be opened", errno);
+  if (S_ISFIFO(status.st_mode))
+    wait_for_writer(descriptor);
+  else if (S_ISREG(status.st_mode))
+    check_size(static_cast<std::size_t>(status.st_size));
+  else if (!S_ISDIR(status.st_mode))  // a directory cannot be read, as will be said
+    refuse("is a device");
+
   std::string text;
   std::array<char, 1 << 16> buffer{};
-  while (const std::size_t read = std::fread(buffer.data(), 1, buffer.size(), file.get()))
+  while (const std::size_t read = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
+    const std::size_t before = text.size();
     text.append(buffer.data(), read);
-  if (std::ferror(file.get())) fail("cannot be read", errno);  // a directory opens, but does not read
+    check_size(text.size());
+    if (const std::size_t zero = text.find('\0', before); zero != text.npos)
+      Location{path, 1 + static_cast<long>(std::count(text.begin(), text.begin() + zero, '\n'))}.fail(
+          "a zero byte, expected text in ASCII or UTF-8");
+  }
+  if (std::ferror(file.get())) fail("cannot be read", errno);
   if (text.empty()) throw InputError(path, 0, "the file is empty, expected text");
   return text;
 }

@@ -9,7 +9,9 @@
 
 namespace springstab {
 
-/// The whole file. Throws InputError where there is nothing to read: missing, unreadable, a directory, empty.
+/// The whole file, or what comes through a pipe. Throws InputError where there is no text of at most 2^31 - 1
+/// bytes: missing, unreadable, a directory, a device (which may have no end), empty, with a zero byte (which
+/// no text has, but the hole of a sparse file does), or a pipe that nobody opens for writing within a second.
 std::string read_text_file(const std::string& path);
 
 /// A line (from 1) of a source; what is read from it fails with an InputError that names it.

@@ -1,0 +1,73 @@
+// The command run as people and programs run it: as a process, in a folder of its own.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/test/unit_test.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace springstab::test {
+
+struct Outcome {
+  int status;
+  std::string out, err;
+
+  nlohmann::json json() const { return nlohmann::json::parse(out); }
+};
+
+/// A folder of its own per test case, removed at the end.
+class Command {
+ public:
+  Command()
+      : folder_(std::filesystem::temp_directory_path() / ("springstab command " + std::to_string(getpid()))) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~Command() { std::filesystem::remove_all(folder_); }
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
+
+  std::filesystem::path file(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name) << content;
+    return folder_ / name;
+  }
+  std::filesystem::path folder() const { return folder_; }
+
+  Outcome operator()(const std::string& arguments) const { return shell("\"$springstab\" " + arguments); }
+
+  /// Any line for the shell, in the folder; its $springstab is the command. stderr is caught too.
+  Outcome shell(const std::string& line) const {
+    const std::filesystem::path err = folder_ / "stderr";
+    const std::string whole = "cd '" + folder_.string() + "' && springstab='" SPRINGSTAB_COMMAND "' && { " +
+                              line + "\n} 2>'" + err.string() + "'";
+    FILE* pipe = popen(whole.c_str(), "r");
+    BOOST_REQUIRE(pipe);
+    Outcome outcome{};
+    std::array<char, 4096> buffer;
+    while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+      outcome.out.append(buffer.data(), n);
+    const int status = pclose(pipe);
+    BOOST_REQUIRE(WIFEXITED(status));
+    outcome.status = WEXITSTATUS(status);
+    std::ostringstream text;
+    text << std::ifstream(err).rdbuf();
+    outcome.err = text.str();
+    std::filesystem::remove(err);
+    return outcome;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+inline long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
+
+}  // namespace springstab::test

@@ -8,6 +8,7 @@
 #include "analysis/general_damping.h"
 #include "analysis/transient_growth.h"
 #include "experiments/experiments.h"
+#include "experiments/mesh_report.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"
 
@@ -201,6 +202,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
   if (!options.method.empty()) find_method(options.method);
   Subject subject(options.input, true);
+  print_mesh_notes(subject);
   const StructuralMatrices structure = subject.structure(subject.initial_state(common.seed));
   const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
   const DampingModel damping = subject.damping();
@@ -243,6 +245,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                       {"growth_rate", number(growth_rate)},
                       {"damping", damping_json(damping)},
                       {"safety", options.safety},
+                      {"mesh", mesh_json(subject)},
                       {"methods", list}}
                      .dump(2)
               << '\n';

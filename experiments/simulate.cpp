@@ -9,6 +9,7 @@
 #include "experiments/explain.h"
 #include "experiments/frames.h"
 #include "experiments/measured_run.h"
+#include "experiments/mesh_report.h"
 #include "experiments/output.h"
 #include "experiments/step_chooser.h"
 #include "solvers/io/input_error.h"
@@ -64,8 +65,8 @@ class Recorder {
       frames_.pop_back();
     }
     if (t < next_time()) return;
-    if (Scene* scene = subject_.scene()) {
-      write_frame(options_.output, options_.format, written(), scene->positions(state.x), subject_.faces());
+    if (subject_.scene()) {
+      write_frame(options_.output, options_.format, written(), subject_.vertices(state.x), subject_.faces());
     } else {
       csv_->stream() << t << ',' << subject_.system().kinetic_energy(state.v) << ','
                      << subject_.system().potential_energy(state.x);
@@ -120,6 +121,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   check(options);
   find_method(options.method);
   Subject subject(options.input);
+  print_mesh_notes(subject);
   if (options.designed_damping) subject.design_damping();
   if (options.projected_hessian) {
     if (!subject.scene()) throw InputError("--hessian", 0, "'projected' is for scenes, expected 'exact'");
@@ -183,7 +185,8 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
                 {"rollbacks", chooser.rollbacks()},
                 {"halved_steps", chooser.halved_steps()}}},
               {"energy", {{"initial", number(energy_before)}, {"final", number(energy_after)}}},
-              {"frames", recorder.written()}};
+              {"frames", recorder.written()},
+              {"mesh", mesh_json(subject)}};
   report["damping"] = {{"d0", number(subject.damping().d0)}, {"alpha", number(subject.damping().alpha)}};
   if (Scene* scene = subject.scene()) {
     const Eigen::Vector3d last = scene->positions(state.x).back();

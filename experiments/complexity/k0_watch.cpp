@@ -13,7 +13,7 @@ namespace springstab {
 namespace {
 
 double largest_stretch(Subject& subject, const State<Vector>& rest, const State<Vector>& state) {
-  const auto before = subject.scene()->positions(rest.x), now = subject.scene()->positions(state.x);
+  const auto before = subject.vertices(rest.x), now = subject.vertices(state.x);
   double largest = 0;
   for (const std::vector<int>& face : subject.faces())
     for (std::size_t c = 0; c < face.size(); ++c) {

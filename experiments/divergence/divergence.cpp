@@ -7,6 +7,7 @@
 #include "experiments/divergence/cloth.h"
 #include "experiments/divergence/examples.h"
 #include "experiments/experiments.h"
+#include "experiments/mesh_report.h"
 #include "experiments/output.h"
 #include "experiments/region.h"
 #include "solvers/io/input_error.h"
@@ -68,6 +69,7 @@ std::vector<std::pair<std::string, Subject>> subjects(const DivergenceOptions& o
     input.file = file;
     if (!file.ends_with(".json")) input.pin = options.pin;
     Subject subject(input);
+    print_mesh_notes(subject);
     const std::size_t slash = file.find_last_of('/');
     all.emplace_back(slash == std::string::npos ? file : file.substr(slash + 1), std::move(subject));
   }

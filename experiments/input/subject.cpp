@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <random>
 #include <type_traits>
 
@@ -29,7 +30,18 @@ std::vector<std::vector<int>> grid_faces(const Grid& grid) {
   return faces;
 }
 
-// Particle numbers of the pins, ascending.
+// Particle numbers of the pins, ascending. Pins of a mesh file name its vertices.
+std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles);
+
+std::vector<int> resolve(const Pins& pins, const MeshFile& file) {
+  std::vector<int> numbers;
+  for (const int vertex : resolve(pins, nullptr, static_cast<int>(file.vertices.size())))
+    if (const int particle = file.repair.vertex[vertex]; particle >= 0) numbers.push_back(particle);
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
+
 std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles) {
   const auto wrong = [&](const std::string& message) { return InputError(pins.source, pins.line, message); };
   if (pins.kind == Pins::Kind::none) return {};
@@ -145,8 +157,14 @@ void Subject::build_scene(const SceneDescription& description) {
                description.material);
   } else {
     const std::string& file = std::get<std::string>(description.geometry);
-    const Mesh mesh = read_obj(file);
-    for (int f = 0; f < mesh.faces(); ++f) faces_.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
+    if (!ends_with(file, ".obj") && std::filesystem::path(file).has_extension())  // a pipe has none
+      throw InputError(file, 0,
+                       "is of no known kind, expected a scene (.json) or a mesh (.obj) by its suffix");
+    Mesh original = read_obj(file);
+    for (int f = 0; f < original.faces(); ++f)
+      faces_.emplace_back(original.face(f).begin(), original.face(f).end());
+    auto [mesh, repair] = repaired(original);
+    mesh_file_ = MeshFile{file, std::move(original.vertices), std::move(repair)};
     std::visit([&](const auto& material) { place(make(mesh, material), description, nullptr, file); },
                description.material);
   }
@@ -157,7 +175,9 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, con
                     const std::string& source) {
   rayleigh_ = description.damping;
   initial_ = description.initial;
-  const std::vector<int> pinned = resolve(description.pins, grid, static_cast<int>(cloth.rest.size()));
+  const std::vector<int> pinned = mesh_file_
+                                      ? resolve(description.pins, *mesh_file_)
+                                      : resolve(description.pins, grid, static_cast<int>(cloth.rest.size()));
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
   pinned_ = pinned;
   const std::string pins_source = description.pins.source.empty() ? source : description.pins.source;
@@ -168,6 +188,18 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, con
   std::vector<Eigen::Vector3d> places;
   for (int i : pinned) places.push_back(initial_.stretch.cwiseProduct(cloth.rest[i]));
   scene_->place_pinned(places);
+}
+
+std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
+  const std::vector<Eigen::Vector3d> particles = scene_->positions(x);
+  if (!mesh_file_) return particles;
+  std::vector<Eigen::Vector3d> all;
+  for (std::size_t v = 0; v < mesh_file_->vertices.size(); ++v) {
+    const int particle = mesh_file_->repair.vertex[v];
+    all.push_back(particle < 0 ? initial_.stretch.cwiseProduct(mesh_file_->vertices[v])
+                               : particles[particle]);
+  }
+  return all;
 }
 
 System& Subject::system() {

@@ -9,6 +9,7 @@
 #include "analysis/method_limits.h"
 #include "experiments/input/scene_description.h"
 #include "solvers/linear/matrix_system.h"
+#include "solvers/scene/mesh_repair.h"
 #include "solvers/scene/scene.h"
 #include "solvers/simulation.h"
 
@@ -23,6 +24,13 @@ struct InputOptions {
   std::string stiffness, mass, damping_matrix;
 };
 
+/// A mesh file as it was, and what was mended to make a scene of it.
+struct MeshFile {
+  std::string path;
+  std::vector<Eigen::Vector3d> vertices;  // [m]
+  MeshRepair repair;
+};
+
 /// A system with its start and everything that limits and reports need to know about it.
 class Subject {
  public:
@@ -35,8 +43,16 @@ class Subject {
   Scene* scene() { return scene_.get(); }               // null for matrices
   MatrixSystem* matrices() { return matrices_.get(); }  // null for scenes
 
-  /// Faces of the mesh, for pictures: particle numbers; empty for matrices and nets without faces.
+  /// Faces for pictures, those of the mesh file or of a grid's cells: numbers of vertices(); none for
+  /// matrices.
   const std::vector<std::vector<int>>& faces() const { return faces_; }
+
+  /// Of a scene, where the vertices of faces() are: the particles, or all vertices of the mesh file in its
+  /// order. One that was merged is where its particle is; an unreferenced one stays where it started.
+  std::vector<Eigen::Vector3d> vertices(const Vector& x) const;
+
+  /// Where the scene is made of a mesh file.
+  const std::optional<MeshFile>& mesh_file() const { return mesh_file_; }
 
   /// What a scene is made of; nothing for matrices.
   const std::optional<Material>& material() const { return material_; }
@@ -67,6 +83,7 @@ class Subject {
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<MatrixSystem> matrices_;
   std::vector<std::vector<int>> faces_;
+  std::optional<MeshFile> mesh_file_;
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
   std::optional<Material> material_;

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "experiments/experiments.h"
+#include "experiments/mesh_report.h"
 #include "experiments/output.h"
 #include "experiments/precision/contest.h"
 #include "experiments/precision/contest_figure.h"
@@ -86,7 +87,9 @@ Json json_of(const ContestResult& result, const Json& files) {
 
 int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options) {
   check(options);
-  Problem problem(title_of(options.input), Subject(options.input), options.duration, common);
+  Subject subject(options.input);
+  print_mesh_notes(subject);
+  Problem problem(title_of(options.input), std::move(subject), options.duration, common);
   if (options.designed_damping) problem.design_damping();
   if (!options.output.empty()) make_folder(options.output);
   const std::string missing = missing_peers();

@@ -1,0 +1,54 @@
+#include "experiments/mesh_report.h"
+
+#include <iostream>
+
+namespace springstab {
+namespace {
+
+// "merged 2 vertices, dropped 1 face": what there is none of is left out.
+class Counted {
+ public:
+  void add(int count, const char* what, const char* one, const char* many) {
+    if (count > 0)
+      list_ += (list_.empty() ? "" : ", ") + text("%s%d %s", what, count, count == 1 ? one : many);
+  }
+  const std::string& list() const { return list_; }
+
+ private:
+  std::string list_;
+};
+
+void note(const MeshFile& file, const std::string& what) {
+  std::cerr << "springstab: note: " << file.path << ": " << what << '\n';
+}
+
+}  // namespace
+
+void print_mesh_notes(const Subject& subject) {
+  if (!subject.mesh_file()) return;
+  const MeshFile& file = *subject.mesh_file();
+  const MeshRepair& r = file.repair;
+  Counted mended;
+  mended.add(r.merged_vertices, "merged ", "duplicate vertex", "duplicate vertices");
+  mended.add(r.shortened_elements, "shortened ", "face with a repeated corner",
+             "faces with a repeated corner");
+  mended.add(r.degenerate_elements, "dropped ", "degenerate face", "degenerate faces");
+  mended.add(r.duplicate_elements, "dropped ", "duplicate face", "duplicate faces");
+  mended.add(r.unreferenced_vertices, "dropped ", "unreferenced vertex", "unreferenced vertices");
+  if (r.changed()) note(file, mended.list() + "; pins and frames keep the numbers of the file");
+  if (r.crowded > 0)
+    note(file, text("%d %s more than two faces: every two of them resist bending there", r.crowded,
+                    r.crowded == 1 ? "edge has" : "edges have"));
+}
+
+Json mesh_json(const Subject& subject) {
+  if (!subject.mesh_file()) return nullptr;
+  const MeshFile& file = *subject.mesh_file();
+  const MeshRepair& r = file.repair;
+  return {{"vertices", file.vertices.size()},        {"merged_vertices", r.merged_vertices},
+          {"shortened_faces", r.shortened_elements}, {"degenerate_faces", r.degenerate_elements},
+          {"duplicate_faces", r.duplicate_elements}, {"unreferenced_vertices", r.unreferenced_vertices},
+          {"non_manifold_edges", r.crowded}};
+}
+
+}  // namespace springstab

@@ -1,0 +1,16 @@
+// What was mended in a mesh file and what is unusual in it, for people and for programs.
+#pragma once
+
+#include "experiments/input/subject.h"
+#include "experiments/output.h"
+
+namespace springstab {
+
+/// A line on stderr for what was mended, one for what is unusual; nothing for a mesh that is neither, for
+/// grids and for matrices.
+void print_mesh_notes(const Subject& subject);
+
+/// The same with every count; null for grids and matrices.
+Json mesh_json(const Subject& subject);
+
+}  // namespace springstab

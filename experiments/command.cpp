@@ -18,13 +18,16 @@ std::string method_names() {
 }
 
 void add_input(CLI::App& command, InputOptions& input) {
-  command.add_option("INPUT", input.file, "SCENE.json or MESH.obj")->type_name("FILE");
+  command.add_option("INPUT", input.file, "SCENE.json, a surface .obj, or tetrahedra .msh, .veg, .vtk")
+      ->type_name("FILE");
   command
       .add_option("--grid", input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
       ->type_name("NxM");
   command.add_option("--spacing", input.spacing, "distance s of the grid's particles (default 0.025)")
       ->type_name("[m]");
-  command.add_option("--material", input.material, "default, soft, stiff (springs) or baraff-witkin")
+  command
+      .add_option("--material", input.material,
+                  "default, soft, stiff (springs), and for surfaces baraff-witkin")
       ->type_name("NAME");
   command.add_option("--pin", input.pin, "none, first-row, corners or particle numbers like 0,5-9")
       ->type_name("SPEC");
@@ -91,6 +94,8 @@ void add_limits(CLI::App& app, const CommonOptions& common, LimitsOptions& o, st
       "at least, at the recommended step; h_certified_source says what proves, reason why nothing does; "
       "growth_rate is how\n"
       "fast the motion itself grows [1/s]. K and D need not be symmetric: then nothing is certified.\n"
+      "mesh says what was mended in a mesh file: a surface of springs or triangles (.obj), or a solid of\n"
+      "tetrahedra (.msh, .veg, .vtk).\n"
       "Exit status 3: the --method asked for has no stable step.\n\n"
       "examples: springstab limits --grid 32x32 --pin first-row\n"
       "          springstab limits skirt.obj --method symplectic-euler --json\n"

@@ -111,6 +111,13 @@ std::vector<std::string> absent_parts(const ClothMaterial& material) {
   return absent;
 }
 
+std::vector<std::string> absent_parts(const SolidMaterial& material) {
+  std::vector<std::string> absent;
+  if (material.stiffness.edge == 0) absent.push_back("springs along edges");
+  if (material.stiffness.altitude == 0) absent.push_back("altitude springs");
+  return absent;
+}
+
 std::vector<std::string> left_out(const Subject& subject, Scene& scene, bool assembles) {
   std::vector<std::string> absent =
       std::visit([](const auto& material) { return absent_parts(material); }, *subject.material());

@@ -8,9 +8,9 @@ namespace {
 // "merged 2 vertices, dropped 1 face": what there is none of is left out.
 class Counted {
  public:
-  void add(int count, const char* what, const char* one, const char* many) {
+  void add(int count, const char* what, const std::string& one, const std::string& many) {
     if (count > 0)
-      list_ += (list_.empty() ? "" : ", ") + text("%s%d %s", what, count, count == 1 ? one : many);
+      list_ += (list_.empty() ? "" : ", ") + text("%s%d %s", what, count, (count == 1 ? one : many).c_str());
   }
   const std::string& list() const { return list_; }
 
@@ -28,15 +28,20 @@ void print_mesh_notes(const Subject& subject) {
   if (!subject.mesh_file()) return;
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;
+  const std::string one = file.solid ? "tetrahedron" : "face", many = file.solid ? "tetrahedra" : "faces";
   Counted mended;
   mended.add(r.merged_vertices, "merged ", "duplicate vertex", "duplicate vertices");
   mended.add(r.shortened_elements, "shortened ", "face with a repeated corner",
              "faces with a repeated corner");
-  mended.add(r.degenerate_elements, "dropped ", "degenerate face", "degenerate faces");
-  mended.add(r.duplicate_elements, "dropped ", "duplicate face", "duplicate faces");
+  mended.add(r.degenerate_elements, "dropped ", "degenerate " + one, "degenerate " + many);
+  mended.add(r.duplicate_elements, "dropped ", "duplicate " + one, "duplicate " + many);
   mended.add(r.unreferenced_vertices, "dropped ", "unreferenced vertex", "unreferenced vertices");
+  mended.add(r.turned_elements, "turned ", "left-handed tetrahedron", "left-handed tetrahedra");
   if (r.changed()) note(file, mended.list() + "; pins and frames keep the numbers of the file");
-  if (r.crowded > 0)
+  if (r.crowded > 0 && file.solid)
+    note(file, text("%d %s tetrahedra that overlap: more than two, or two on one side", r.crowded,
+                    r.crowded == 1 ? "face has" : "faces have"));
+  if (r.crowded > 0 && !file.solid)
     note(file, text("%d %s more than two faces: every two of them resist bending there", r.crowded,
                     r.crowded == 1 ? "edge has" : "edges have"));
 }
@@ -45,10 +50,21 @@ Json mesh_json(const Subject& subject) {
   if (!subject.mesh_file()) return nullptr;
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;
-  return {{"vertices", file.vertices.size()},        {"merged_vertices", r.merged_vertices},
-          {"shortened_faces", r.shortened_elements}, {"degenerate_faces", r.degenerate_elements},
-          {"duplicate_faces", r.duplicate_elements}, {"unreferenced_vertices", r.unreferenced_vertices},
-          {"non_manifold_edges", r.crowded}};
+  Json json{{"vertices", file.vertices.size()},
+            {"merged_vertices", r.merged_vertices},
+            {"unreferenced_vertices", r.unreferenced_vertices}};
+  if (file.solid) {
+    json["degenerate_tetrahedra"] = r.degenerate_elements;
+    json["duplicate_tetrahedra"] = r.duplicate_elements;
+    json["left_handed_tetrahedra"] = r.turned_elements;
+    json["overlapped_faces"] = r.crowded;
+  } else {
+    json["shortened_faces"] = r.shortened_elements;
+    json["degenerate_faces"] = r.degenerate_elements;
+    json["duplicate_faces"] = r.duplicate_elements;
+    json["non_manifold_edges"] = r.crowded;
+  }
+  return json;
 }
 
 }  // namespace springstab

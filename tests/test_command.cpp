@@ -496,6 +496,61 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(a_solid_of_tetrahedra_is_a_scene_like_any_other) {
+  const std::string tets =
+      "*VERTICES\n6 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n6 9 9 9\n"
+      "*ELEMENTS\nTET\n2 4 0\n1 1 2 4 3\n2 2 3 4 5\n";
+  file("solid.veg", tets);
+  file("cloth.obj", square);
+  file("solid.json", R"({"geometry": {"mesh": "solid.veg"}, "pins": "0-2",
+                         "material": {"model": "tetrahedra", "density": 500, "edge": 100, "altitude": 50,
+                                      "damping": {"edge": 0.1, "altitude": 0.2}}})");
+  file("cloth.json", R"({"geometry": {"mesh": "solid.veg"}, "material": {"model": "baraff-witkin"}})");
+  file("solid of cloth.json", R"({"geometry": {"mesh": "cloth.obj"}, "material": {"model": "tetrahedra"}})");
+
+  const Outcome limits = (*this)("limits solid.veg --json");
+  BOOST_TEST(limits.status == 0);
+  BOOST_TEST(lines(limits.err) == 1);
+  BOOST_TEST(limits.err.find("dropped 1 unreferenced vertex, turned 1 left-handed tetrahedron") !=
+             limits.err.npos);
+  const Json report = limits.json();
+  BOOST_TEST(report["degrees_of_freedom"] == 15);
+  BOOST_TEST(report["mesh"]["left_handed_tetrahedra"] == 1);
+  BOOST_TEST(report["mesh"]["overlapped_faces"] == 0);
+  const double stiff = (*this)("limits solid.veg --material stiff --json").json()["k0"]["value"];
+  BOOST_TEST(stiff == 100 * report["k0"]["value"].get<double>(), boost::test_tools::tolerance(1e-9));
+
+  // ½ g t² = 0.049 m, to a step more or less (0.0049 m): the particle hangs on springs that are hardly
+  // strained yet
+  for (const std::string method : {"symplectic-euler", "implicit-euler", "linearized-rk4"}) {
+    const Outcome run = (*this)("simulate solid.json --method " + method +
+                                " --duration 0.1 --step 0.01 --output out --frames 2 --json");
+    BOOST_TEST(run.status == 0);
+    const double fall = 1 - run.json()["last_particle"]["position"][1].get<double>();
+    BOOST_TEST(std::abs(fall - 0.049) < 0.006);
+  }
+  BOOST_TEST((*this)("limits solid.json --json").json()["damping"]["kind"] == "general");
+  std::ostringstream frame;
+  frame << std::ifstream(folder() / "out" / "frame_00002.obj").rdbuf();
+  BOOST_TEST(lines(frame.str()) == 6 + 6);  // the file's vertices, and the surface
+  BOOST_TEST(frame.str().find("v 9 9 9\n") != std::string::npos);
+
+  const std::pair<std::string, std::string> refused[] = {
+      {"limits cloth.json", "cloth.json:1: 'model' is 'baraff-witkin', expected 'tetrahedra'"},
+      {"limits 'solid of cloth.json'", "expected 'springs' or 'baraff-witkin'"},
+      {"limits solid.veg --material baraff-witkin", "--material"},
+      {"limits solid.veg --pin 6", "does not exist"},
+      {"limits solid.ply", "solid.ply: is of no known kind, expected a suffix: .json"},
+  };
+  for (const auto& [arguments, word] : refused) {
+    const Outcome run = (*this)(arguments);
+    BOOST_TEST_CONTEXT(arguments << " -> " << run.err) {
+      BOOST_TEST(run.status == 2);
+      BOOST_TEST(run.err.find(word) != std::string::npos);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(complexity_tells_tables_and_every_run) {
   const Outcome run = (*this)("complexity --quick --json");
   BOOST_REQUIRE_EQUAL(run.status, 0);

@@ -8,6 +8,11 @@ void multiply(ClothMaterial& material, double factor) {
   for (double* stiffness : {&k.stretch_u, &k.stretch_v, &k.shear, &k.bending}) *stiffness *= factor;
 }
 
+void multiply(SolidMaterial& material, double factor) {
+  material.stiffness.edge *= factor;
+  material.stiffness.altitude *= factor;
+}
+
 void multiply(SpringMaterial& material, double factor) {
   PerKind& k = material.stiffness;
   for (double* stiffness : {&k.structural, &k.shear, &k.bending}) *stiffness *= factor;

@@ -5,6 +5,7 @@
 
 #include "experiments/input/scene_description.h"
 #include "solvers/io/input_error.h"
+#include "solvers/io/tet_file.h"
 #include "solvers/io/text_file.h"
 
 namespace springstab {
@@ -43,7 +44,21 @@ std::string expected_one_of(const std::string& word, const std::vector<std::stri
   return nearest.empty() ? text : text + " (did you mean " + springstab::quoted(nearest) + "?)";
 }
 
-Material named_material(const std::string& name, const std::string& source, long line) {
+bool is_solid(const Geometry& geometry) {
+  const std::string* file = std::get_if<std::string>(&geometry);
+  return file && is_tet_file(*file);
+}
+
+Material named_material(const std::string& name, const Geometry& geometry, const std::string& source,
+                        long line) {
+  if (is_solid(geometry)) {
+    if (name == "default") return SolidMaterial{};
+    if (name == "soft") return SolidMaterial{.stiffness = {100, 100}};
+    if (name == "stiff") return SolidMaterial{.stiffness = {1e5, 1e5}};
+    throw InputError(source, line,
+                     "the material " + springstab::quoted(name) + " of a mesh of tetrahedra, " +
+                         expected_one_of(name, {"default", "soft", "stiff"}));
+  }
   if (name == "default") return SpringMaterial{};
   if (name == "soft") return SpringMaterial{.stiffness = {20, 10, 2}};
   if (name == "stiff") return SpringMaterial{.stiffness = {20000, 10000, 200}};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "solvers/scene/spring_cloth.h"
+#include "solvers/scene/tet_solid.h"
 #include "solvers/scene/triangle_cloth.h"
 
 namespace springstab {
@@ -42,11 +43,11 @@ struct InitialDescription {
   Eigen::Vector3d velocity{0, 0, 0};  // [m/s]
 };
 
-/// A grid, or the path of an OBJ file.
+/// A grid, or the path of a mesh file.
 using Geometry = std::variant<Grid, std::string>;
 
-/// Springs, or Baraff's and Witkin's triangles.
-using Material = std::variant<SpringMaterial, ClothMaterial>;
+/// Springs, Baraff's and Witkin's triangles, or a solid of tetrahedra.
+using Material = std::variant<SpringMaterial, ClothMaterial, SolidMaterial>;
 
 struct SceneDescription {
   Geometry geometry;
@@ -63,8 +64,13 @@ std::vector<Range> merged(std::vector<Range> ranges);
 /// "none", "first-row", "corners" or "0,5-9". Throws InputError(source, line, ...) for anything else.
 Pins parse_pins(const std::string& text, const std::string& source, long line);
 
-/// The materials known by name. Throws InputError(source, line, ...) naming the nearest known one.
-Material named_material(const std::string& name, const std::string& source, long line);
+/// Whether the geometry is a file of tetrahedra, by its name.
+bool is_solid(const Geometry& geometry);
+
+/// The materials known by name, for a geometry of tetrahedra those of its kind. Throws
+/// InputError(source, line, ...) naming the nearest known one.
+Material named_material(const std::string& name, const Geometry& geometry, const std::string& source,
+                        long line);
 
 /// The half of a message about an unknown word that says what was expected:
 /// "expected 'soft' or 'stiff' (did you mean 'soft'?)", the nearest word only if it is near.

@@ -174,7 +174,9 @@ class SceneReader {
       fail(json.line,
            "'geometry' is missing, expected {\"grid\": [rows, columns]} or {\"mesh\": \"cloth.obj\"}");
     scene.geometry = geometry(*geometry_json);
-    if (const Json* value = find(json, "material")) scene.material = material(*value);
+    const Json* material_json = find(json, "material");
+    scene.material = material_json ? material(*material_json, scene.geometry)
+                                   : named_material("default", scene.geometry, source_, json.line);
     scene.pins.source = source_;
     if (const Json* value = find(json, "pins")) scene.pins = pins(*value);
     if (const Json* value = find(json, "gravity")) scene.gravity = vector(*value);
@@ -260,7 +262,7 @@ class SceneReader {
                           " 'grid' and 'mesh', expected one of them");
     if (grid_json) return grid(json, *grid_json);
     if (spacing) fail(spacing->key_line, "'spacing' stands beside 'mesh', expected it with 'grid' only");
-    if (mesh->kind != Json::Kind::string || mesh->text.empty()) wrong(*mesh, "the path of an OBJ file");
+    if (mesh->kind != Json::Kind::string || mesh->text.empty()) wrong(*mesh, "the path of a mesh file");
     return (std::filesystem::path(source_).parent_path() / mesh->text).string();
   }
 
@@ -282,20 +284,24 @@ class SceneReader {
     return json.text;
   }
 
-  Material material(const Json& json) const {
-    if (json.kind == Json::Kind::string) return named_material(json.text, source_, json.line);
+  Material material(const Json& json, const Geometry& geometry) const {
+    if (json.kind == Json::Kind::string) return named_material(json.text, geometry, source_, json.line);
     if (json.kind != Json::Kind::object) wrong(json, "the name of a material or an object");
-    Material start;
+    Material start = named_material("default", geometry, source_, json.line);
     if (const Json* model = find(json, "model")) {
-      const std::string name = text(*model, "'springs' or 'baraff-witkin'");
-      if (name != "springs" && name != "baraff-witkin")
-        wrong(*model,
-              expected_one_of(name, {"springs", "baraff-witkin"}).substr(std::string("expected ").size()));
+      const std::vector<std::string_view> known =
+          is_solid(geometry) ? std::vector<std::string_view>{"tetrahedra"}
+                             : std::vector<std::string_view>{"springs", "baraff-witkin"};
+      const std::string expected =
+          is_solid(geometry) ? "'tetrahedra' for such a mesh" : "'springs' or 'baraff-witkin'";
+      const std::string name = text(*model, expected);
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        wrong(*model, expected_one_of(name, known).substr(std::string("expected ").size()));
       if (name == "baraff-witkin") start = ClothMaterial{};
     }
     if (const Json* name = find(json, "name")) {
       const std::size_t model = start.index();
-      start = named_material(text(*name, "the name of a material"), source_, name->line);
+      start = named_material(text(*name, "the name of a material"), geometry, source_, name->line);
       if (find(json, "model") && start.index() != model) wrong(*name, "the name of a material of that model");
     }
     return std::visit([&](auto material) -> Material { return read_material(json, material); }, start);
@@ -357,6 +363,25 @@ class SceneReader {
     if (const Json* damping = find(json, "damping")) {
       expect_members(*damping, {"stretch", "shear", "bending"});
       read_per_condition(*damping, material.damping);
+      check(material, source_, damping->line);
+    }
+    return material;
+  }
+
+  void read_per_kind(const Json& object, PerSolidKind& values) const {
+    read_number(object, "edge", Sign::not_negative, values.edge);
+    read_number(object, "altitude", Sign::not_negative, values.altitude);
+  }
+
+  SolidMaterial read_material(const Json& json, SolidMaterial material) const {
+    expect_members(json, {"model", "name", "density", "particle_mass", "edge", "altitude", "damping"});
+    read_number(json, "density", Sign::positive, material.density);
+    if (const Json* mass = find(json, "particle_mass"))
+      material.particle_mass = number(*mass, Sign::positive);
+    read_per_kind(json, material.stiffness);
+    if (const Json* damping = find(json, "damping")) {
+      expect_members(*damping, {"edge", "altitude"});
+      read_per_kind(*damping, material.damping);
       check(material, source_, damping->line);
     }
     return material;

@@ -9,6 +9,7 @@
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/io/obj.h"
+#include "solvers/io/tet_file.h"
 #include "solvers/scene/every_pose.h"
 
 namespace springstab {
@@ -83,7 +84,8 @@ SceneDescription describe(const InputOptions& options) {
     check(grid, "--grid");
     description.geometry = grid;
   }
-  if (!options.material.empty()) description.material = named_material(options.material, "--material", 0);
+  description.material = named_material(options.material.empty() ? "default" : options.material,
+                                        description.geometry, "--material", 0);
   if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
   return description;
 }
@@ -95,6 +97,14 @@ SpringNet make(const Geometry& geometry, const SpringMaterial& material) {
 template <class Geometry>
 TriangleCloth make(const Geometry& geometry, const ClothMaterial& material) {
   return make_cloth(geometry, material);
+}
+
+// Calls visit with the material of a surface.
+template <class Visit>
+void visit_cloth(const Material& material, const std::string& source, const Visit& visit) {
+  if (const auto* springs = std::get_if<SpringMaterial>(&material)) return visit(*springs);
+  if (const auto* cloth = std::get_if<ClothMaterial>(&material)) return visit(*cloth);
+  throw InputError(source, 0, "is a surface, expected a material of the model 'springs' or 'baraff-witkin'");
 }
 
 // Names the file in what the matrix library says.
@@ -126,7 +136,7 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
   if (given != 1)
     throw InputError("input", 0,
                      std::string(given == 0 ? "nothing was given" : "more than one was given") +
-                         ", expected one of SCENE.json, MESH.obj, --grid NxM or --stiffness K.mtx");
+                         ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
   if (options.stiffness.empty()) {
     if (!options.mass.empty() || !options.damping_matrix.empty())
       throw InputError("input", 0, "--mass and --damping-matrix go with --stiffness");
@@ -153,21 +163,44 @@ void Subject::build_scene(const SceneDescription& description) {
   material_ = description.material;
   if (const Grid* grid = std::get_if<Grid>(&description.geometry)) {
     faces_ = grid_faces(*grid);
-    std::visit([&](const auto& material) { place(make(*grid, material), description, grid, "--grid"); },
-               description.material);
-  } else {
-    const std::string& file = std::get<std::string>(description.geometry);
-    if (!ends_with(file, ".obj") && std::filesystem::path(file).has_extension())  // a pipe has none
-      throw InputError(file, 0,
-                       "is of no known kind, expected a scene (.json) or a mesh (.obj) by its suffix");
-    Mesh original = read_obj(file);
-    for (int f = 0; f < original.faces(); ++f)
-      faces_.emplace_back(original.face(f).begin(), original.face(f).end());
-    auto [mesh, repair] = repaired(original);
-    mesh_file_ = MeshFile{file, std::move(original.vertices), std::move(repair)};
-    std::visit([&](const auto& material) { place(make(mesh, material), description, nullptr, file); },
-               description.material);
+    visit_cloth(description.material, "--grid",
+                [&](const auto& material) { place(make(*grid, material), description, grid, "--grid"); });
+    return;
   }
+  const std::string& file = std::get<std::string>(description.geometry);
+  if (is_tet_file(file)) return build_solid(file, description);
+  if (!ends_with(file, ".obj") && std::filesystem::path(file).has_extension())  // a pipe has none
+    throw InputError(
+        file, 0,
+        "is of no known kind, expected a suffix: .json for a scene, .obj for a surface, .msh, .veg "
+        "or .vtk for tetrahedra");
+  build_surface(file, description);
+}
+
+void Subject::build_surface(const std::string& file, const SceneDescription& description) {
+  Mesh original = read_obj(file);
+  for (int f = 0; f < original.faces(); ++f)
+    faces_.emplace_back(original.face(f).begin(), original.face(f).end());
+  RepairedMesh mended = repaired(original);
+  mesh_file_ = MeshFile{file, false, std::move(original.vertices), std::move(mended.repair)};
+  visit_cloth(description.material, file,
+              [&](const auto& material) { place(make(mended.mesh, material), description, nullptr, file); });
+}
+
+void Subject::build_solid(const std::string& file, const SceneDescription& description) {
+  const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
+  if (!material) throw InputError(file, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
+  TetMesh original = read_tets(file);
+  auto [mesh, repair] = repaired(original);
+  std::vector<int> of_file(mesh.vertices.size());  // the first vertex that each one was
+  for (std::size_t v = repair.vertex.size(); v-- > 0;)
+    if (repair.vertex[v] >= 0) of_file[repair.vertex[v]] = static_cast<int>(v);
+  for (std::vector<int> face : boundary(mesh)) {
+    for (int& v : face) v = of_file[v];
+    faces_.push_back(std::move(face));
+  }
+  mesh_file_ = MeshFile{file, true, std::move(original.vertices), std::move(repair)};
+  place(make_solid(mesh, *material), description, nullptr, file);
 }
 
 template <class Cloth>

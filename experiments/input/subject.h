@@ -17,16 +17,17 @@ namespace springstab {
 
 /// INPUT as typed; empty strings were not given. Exactly one of file, grid and stiffness must be.
 struct InputOptions {
-  std::string file;               // SCENE.json or MESH.obj
+  std::string file;               // SCENE.json or a mesh
   std::string grid;               // "NxM"
   std::optional<double> spacing;  // [m], with grid
-  std::string material, pin;      // with grid or MESH.obj
+  std::string material, pin;      // with grid or a mesh
   std::string stiffness, mass, damping_matrix;
 };
 
 /// A mesh file as it was, and what was mended to make a scene of it.
 struct MeshFile {
   std::string path;
+  bool solid;                             // of tetrahedra
   std::vector<Eigen::Vector3d> vertices;  // [m]
   MeshRepair repair;
 };
@@ -43,8 +44,8 @@ class Subject {
   Scene* scene() { return scene_.get(); }               // null for matrices
   MatrixSystem* matrices() { return matrices_.get(); }  // null for scenes
 
-  /// Faces for pictures, those of the mesh file or of a grid's cells: numbers of vertices(); none for
-  /// matrices.
+  /// Faces for pictures, those of the mesh file (of a solid its surface) or of a grid's cells: numbers of
+  /// vertices(); none for matrices.
   const std::vector<std::vector<int>>& faces() const { return faces_; }
 
   /// Of a scene, where the vertices of faces() are: the particles, or all vertices of the mesh file in its
@@ -75,6 +76,8 @@ class Subject {
 
  private:
   void build_scene(const SceneDescription& description);
+  void build_surface(const std::string& file, const SceneDescription& description);
+  void build_solid(const std::string& file, const SceneDescription& description);
   template <class Cloth>
   void place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
              const std::string& source);

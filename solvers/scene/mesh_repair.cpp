@@ -77,6 +77,25 @@ int crowded_edges(const Mesh& mesh) {
   return crowded;
 }
 
+int crowded_faces(const TetMesh& mesh) {
+  // each face as its tetrahedron sees it from outside: an even turn of the sorted corners, or an odd one
+  std::vector<std::pair<std::array<int, 3>, bool>> sides;
+  for (const auto& tet : mesh.tets)
+    for (const auto& face : outward_faces) {
+      std::array<int, 3> c{tet[face[0]], tet[face[1]], tet[face[2]]};
+      const bool odd = (c[0] > c[1]) != ((c[0] > c[2]) != (c[1] > c[2]));
+      std::ranges::sort(c);
+      sides.emplace_back(c, odd);
+    }
+  std::sort(sides.begin(), sides.end());
+  int crowded = 0;
+  for (auto first = sides.begin(), last = first; first != sides.end(); first = last) {
+    last = std::find_if(first, sides.end(), [&](const auto& side) { return side.first != first->first; });
+    crowded += last - first > 2 || (last - first == 2 && first->second == (first + 1)->second);
+  }
+  return crowded;
+}
+
 }  // namespace
 
 RepairedMesh repaired(const Mesh& mesh) {
@@ -121,6 +140,46 @@ RepairedMesh repaired(const Mesh& mesh) {
   out.vertices = kept(mesh.vertices, used);
   if (!mesh.vertex_line.empty()) out.vertex_line = kept(mesh.vertex_line, used);
   repair.crowded = crowded_edges(out);
+  return result;
+}
+
+RepairedTets repaired(const TetMesh& mesh) {
+  const std::vector<int> first = first_in_place(mesh.vertices);
+  RepairedTets result;
+  auto& [out, repair] = result;
+  out.source = mesh.source;
+  std::vector<bool> used(mesh.vertices.size(), false);
+  std::set<std::array<int, 4>> seen;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    std::array<int, 4> tet = mesh.tets[t];
+    for (int& v : tet) v = first[v];
+    std::array<int, 4> sorted = tet;
+    std::ranges::sort(sorted);
+    const bool degenerate = std::ranges::adjacent_find(sorted) != sorted.end();
+    if (degenerate || !seen.insert(sorted).second) {
+      ++(degenerate ? repair.degenerate_elements : repair.duplicate_elements);
+      continue;
+    }
+    for (const int v : tet) used[v] = true;
+    out.tets.push_back(tet);
+    if (!mesh.tet_line.empty()) out.tet_line.push_back(mesh.tet_line[t]);
+  }
+  if (!mesh.tets.empty() && out.tets.empty())
+    fail_at_tet(
+        mesh, 0,
+        "the tetrahedron has fewer than four corners in different places, as all others have, expected "
+        "one with a volume");
+  number_vertices(first, used, repair);
+  for (auto& tet : out.tets)
+    for (int& v : tet) v = repair.vertex[v];
+  out.vertices = kept(mesh.vertices, used);
+  if (!mesh.vertex_line.empty()) out.vertex_line = kept(mesh.vertex_line, used);
+  for (int t = 0; t < static_cast<int>(out.tets.size()); ++t)
+    if (out.six_volumes(t) < 0) {
+      std::swap(out.tets[t][2], out.tets[t][3]);
+      ++repair.turned_elements;
+    }
+  repair.crowded = crowded_faces(out);
   return result;
 }
 

@@ -7,24 +7,28 @@
 #include <vector>
 
 #include "solvers/scene/mesh.h"
+#include "solvers/scene/tet_mesh.h"
 
 namespace springstab {
 
-/// What was mended, in numbers, and what is unusual but stays.
+/// What was mended, in numbers, and what is unusual but stays. Elements are the faces of a surface or the
+/// tetrahedra of a solid.
 struct MeshRepair {
   int merged_vertices = 0;        // into the first one in exactly their place (0 and -0 are one coordinate)
   int shortened_elements = 0;     // faces that lost a corner that was there twice in a row
-  int degenerate_elements = 0;    // dropped: fewer than three corners were left
-  int duplicate_elements = 0;     // dropped: the same corners in the same order or the reverse one
+  int degenerate_elements = 0;    // dropped: fewer than three (four) corners were left
+  int duplicate_elements = 0;     // dropped: the same corners, of a face also their order or its reverse
   int unreferenced_vertices = 0;  // dropped: no element has them
-  int crowded = 0;                // edges of more than two faces; these stay
+  int turned_elements = 0;        // left-handed tetrahedra, made right-handed
+  int crowded = 0;                // these stay: edges of more than two faces; faces of more than two
+                                  // tetrahedra or of two on one side, which overlap
 
   /// Of each vertex of the file its number in the mended mesh; -1 for an unreferenced one.
   std::vector<int> vertex;
 
   bool changed() const {
     return merged_vertices > 0 || shortened_elements > 0 || degenerate_elements > 0 ||
-           duplicate_elements > 0 || unreferenced_vertices > 0;
+           duplicate_elements > 0 || unreferenced_vertices > 0 || turned_elements > 0;
   }
 };
 
@@ -36,5 +40,13 @@ struct RepairedMesh {
   MeshRepair repair;
 };
 RepairedMesh repaired(const Mesh& mesh);
+
+/// The same of tetrahedra. All that are left have four corners in different places and are right-handed,
+/// unless they have no volume at all.
+struct RepairedTets {
+  TetMesh mesh;
+  MeshRepair repair;
+};
+RepairedTets repaired(const TetMesh& mesh);
 
 }  // namespace springstab

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "solvers/scene/springs.h"
+#include "solvers/scene/tet_solid.h"
 #include "solvers/scene/triangle_cloth.h"
 
 namespace springstab {
@@ -36,6 +37,7 @@ Scene::Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Ve
 
 template Scene::Scene(const SpringNet&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
 template Scene::Scene(const TriangleCloth&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
+template Scene::Scene(const TetSolid&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);
 
 // Free particles first.
 void Scene::number_particles(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,

@@ -14,6 +14,7 @@ namespace springstab {
 
 struct SpringNet;
 struct TriangleCloth;
+struct TetSolid;
 
 /// Of the elastic energy, in a linearization.
 enum class Hessian {
@@ -26,9 +27,9 @@ enum class Hessian {
 /// linearization.
 class Scene final : public System {
  public:
-  /// A SpringNet or a TriangleCloth with the given particles pinned at their rest positions. `pinned` ascends
-  /// without repeats. Throws std::invalid_argument for an index out of range and when nothing is left to
-  /// move.
+  /// A SpringNet, a TriangleCloth or a TetSolid with the given particles pinned at their rest positions.
+  /// `pinned` ascends without repeats. Throws std::invalid_argument for an index out of range and when
+  /// nothing is left to move.
   template <class Cloth>
   Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
         RayleighDamping damping);

@@ -7,10 +7,13 @@
 #include <stdexcept>
 
 #include "experiments/input/scene_description.h"
+#include "solvers/io/gmsh.h"
 #include "solvers/io/harwell_boeing.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_market.h"
 #include "solvers/io/obj.h"
+#include "solvers/io/vega.h"
+#include "solvers/io/vtk.h"
 
 namespace springstab::test {
 namespace {
@@ -47,6 +50,15 @@ void check_mesh(const Mesh& mesh) {
   require(mesh.face_offsets.front() == 0 && std::ranges::is_sorted(mesh.face_offsets), "offsets ascend");
   require(mesh.face_offsets.back() == static_cast<int>(mesh.face_vertices.size()), "corners have a face");
   require(all_in_range(mesh.face_vertices, mesh.vertices.size()), "corners are vertices");
+}
+
+void check_tets(const TetMesh& mesh) {
+  require(!mesh.vertices.empty() && !mesh.tets.empty(), "a mesh has vertices and tetrahedra");
+  for (const Eigen::Vector3d& vertex : mesh.vertices) require(vertex.allFinite(), "vertices are finite");
+  require(mesh.vertex_line.size() == mesh.vertices.size(), "each vertex has a line");
+  require(mesh.tet_line.size() == mesh.tets.size(), "each tetrahedron has a line");
+  for (const auto& tet : mesh.tets)
+    require(all_in_range({tet.begin(), tet.end()}, mesh.vertices.size()), "corners are vertices");
 }
 
 void check_scene(const SceneDescription& scene) {
@@ -88,10 +100,13 @@ void check_refusal(std::string_view message, std::string_view text) {
 
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all{
+      {"gmsh", [](std::string_view text) { check_tets(parse_gmsh(source, text)); }},
       {"harwell_boeing", [](std::string_view text) { check_matrix(parse_harwell_boeing(source, text)); }},
       {"matrix_market", [](std::string_view text) { check_matrix(parse_matrix_market(source, text)); }},
       {"obj", [](std::string_view text) { check_mesh(parse_obj(source, text)); }},
       {"scene", [](std::string_view text) { check_scene(parse_scene(source, text)); }},
+      {"vega", [](std::string_view text) { check_tets(parse_vega(source, text)); }},
+      {"vtk", [](std::string_view text) { check_tets(parse_vtk(source, text)); }},
   };
   return all;
 }

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <iostream>
+#include <new>
 #include <stdexcept>
 
 #include "experiments/experiments.h"
@@ -350,6 +351,9 @@ int run_command(int argc, const char* const* argv) {
     return bad_input;
   } catch (const std::invalid_argument& error) {
     std::cerr << "springstab: " << error.what() << '\n';
+    return bad_input;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "springstab: not enough memory for this input\n";
     return bad_input;
   } catch (const std::exception& error) {
     std::cerr << "springstab: internal error: " << error.what() << '\n';

@@ -28,6 +28,9 @@ struct Mesh {
   }
 };
 
+/// The most faces at an edge, for each two of them are joined: what a small file describes stays small.
+inline constexpr int most_faces_at_edge = 100;
+
 /// Throws InputError, with the mesh's file and line, unless there are faces, every coordinate is finite,
 /// every face has three or more distinct corners that exist, and every vertex belongs to a face.
 void check(const Mesh& mesh);

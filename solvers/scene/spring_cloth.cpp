@@ -119,11 +119,17 @@ std::vector<Pair> joined_pairs(const Mesh& mesh, const PerKind& stiffness) {
   const std::vector<Side> sides = sides_by_edge(mesh);
   for (auto first = sides.begin(), last = first; first != sides.end(); first = last) {
     join(first->low, first->high, Kind::structural, first->face);
-    for (; last != sides.end() && last->low == first->low && last->high == first->high; ++last)
+    for (; last != sides.end() && last->low == first->low && last->high == first->high; ++last) {
+      if (last - first == most_faces_at_edge)
+        fail_at_face(mesh, last->face,
+                     "face is one of more than " + std::to_string(most_faces_at_edge) + " at the edge " +
+                         std::to_string(first->low + 1) + "-" + std::to_string(first->high + 1) +
+                         ", expected at most that many");
       for (auto other = first; other != last; ++other) {
         join(other->beyond_low, last->beyond_low, Kind::bending, last->face);
         join(other->beyond_high, last->beyond_high, Kind::bending, last->face);
       }
+    }
   }
   std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
     return std::tie(p.i, p.j, p.kind, p.face) < std::tie(q.i, q.j, q.kind, q.face);

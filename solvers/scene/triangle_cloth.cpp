@@ -184,7 +184,7 @@ double rest_angle(const std::vector<Vector3d>& rest, const std::array<int, 4>& p
 }
 
 std::vector<Hinge> find_hinges(const std::vector<RestTriangle>& triangles, const std::vector<Vector3d>& rest,
-                               bool flat) {
+                               bool flat, const std::string& source) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
   for (const auto& [p, uv] : triangles)
@@ -197,18 +197,24 @@ std::vector<Hinge> find_hinges(const std::vector<RestTriangle>& triangles, const
   });
   std::vector<Hinge> hinges;
   for (auto first = sides.begin(), last = first; first != sides.end(); first = last)
-    for (; last != sides.end() && last->low == first->low && last->high == first->high; ++last)
+    for (; last != sides.end() && last->low == first->low && last->high == first->high; ++last) {
+      if (last - first == most_faces_at_edge)
+        throw InputError(source, 0,
+                         "more than " + std::to_string(most_faces_at_edge) + " triangles at the edge " +
+                             std::to_string(first->low + 1) + "-" + std::to_string(first->high + 1) +
+                             ", expected at most that many");
       for (auto other = first; other != last; ++other) {
         if (other->opposite == last->opposite) continue;
         const std::array<int, 4> particles{first->low, first->high, other->opposite, last->opposite};
         hinges.push_back({particles, rest_angle(rest, particles, flat)});
       }
+    }
   return hinges;
 }
 
 /// Keeps of the elements what the material needs.
-void finish(TriangleCloth& cloth, std::vector<RestTriangle> triangles, bool flat) {
-  if (cloth.material.stiffness.bending > 0) cloth.hinges = find_hinges(triangles, cloth.rest, flat);
+void finish(TriangleCloth& cloth, std::vector<RestTriangle> triangles, bool flat, const std::string& source) {
+  if (cloth.material.stiffness.bending > 0) cloth.hinges = find_hinges(triangles, cloth.rest, flat, source);
   if (cloth.material.stiffness.any_in_plane()) cloth.triangles = std::move(triangles);
 }
 
@@ -258,7 +264,7 @@ TriangleCloth make_cloth(const Grid& grid, const ClothMaterial& material) {
       triangles.push_back(triangle(p, p + 1, q + 1));
       triangles.push_back(triangle(p, q + 1, q));
     }
-  finish(cloth, std::move(triangles), true);
+  finish(cloth, std::move(triangles), true, "grid");
   return cloth;
 }
 
@@ -296,7 +302,7 @@ TriangleCloth make_cloth(const Mesh& mesh, const ClothMaterial& material) {
       fail_at_vertex(mesh, v,
                      "has a mass of " + shown(cloth.mass[v]) +
                          " kg from the area of its faces, expected a positive finite one");
-  finish(cloth, std::move(triangles), plane.has_value());
+  finish(cloth, std::move(triangles), plane.has_value(), mesh.source);
   return cloth;
 }
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "experiments/experiments.h"
+#include "experiments/interrupt.h"
 #include "solvers/io/input_error.h"
 #include "solvers/stepper.h"
 
@@ -36,6 +37,12 @@ void add_input(CLI::App& command, InputOptions& input) {
       ->type_name("FILE");
   command.add_option("--mass", input.mass, "M (default: the unit matrix)")->type_name("FILE");
   command.add_option("--damping-matrix", input.damping_matrix, "D (default: none)")->type_name("FILE");
+}
+
+// For the commands that keep what they have finished.
+void add_resume(CLI::App& command, bool& resume) {
+  command.add_flag("--resume", resume,
+                   "go on where the same command was interrupted; what it had finished is in --output");
 }
 
 void add_methods(CLI::App& app, const CommonOptions& common, std::function<int()>& chosen) {
@@ -174,6 +181,7 @@ void add_complexity(CLI::App& app, const CommonOptions& common, ComplexityOption
   command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
       ->type_name("DIR")
       ->capture_default_str();
+  add_resume(*command, o.resume);
   command->footer(
       "CPU time against the number of particles, the square root of k0 [1/s] and implicit Euler's step [s]: "
       "the\n"
@@ -182,7 +190,8 @@ void add_complexity(CLI::App& app, const CommonOptions& common, ComplexityOption
       "JSON: tables[] (as printed), studies[] {name, series[] {name, exponent, half_width, points[]}}, "
       "all_finished,\n"
       "rollbacks, provenance, files. Exit status 3: a run did not come to its end.\n\n"
-      "example: springstab complexity --output figures");
+      "example: springstab complexity --output figures\n"
+      "         springstab complexity --output figures --resume    (after Ctrl-C or a crash)");
   command->callback([&] { chosen = [&] { return run_complexity(common, o); }; });
 }
 
@@ -205,6 +214,7 @@ void add_work_precision(CLI::App& app, const CommonOptions& common, WorkPrecisio
   command->add_option("--plots", o.plots, "folder of the gnuplot scripts")
       ->type_name("DIR")
       ->capture_default_str();
+  add_resume(*command, o.resume);
   command->footer(
       "Every method runs with steps from its stability limit down, halved each time, and each library with\n"
       "tolerances from 0.1 down, until a run takes too long or is within 100 times the reference's own "
@@ -218,7 +228,8 @@ void add_work_precision(CLI::App& app, const CommonOptions& common, WorkPrecisio
       "Choose a duration on which the motion is not chaotic: the reference then says how precise it is.\n"
       "Cost: CPU seconds, and passes over all springs or blocks (force evaluations, assemblies, products).\n"
       "JSON: reference {method, error}, contestants[] {name, library, limit, runs[]}, provenance, files.\n\n"
-      "example: springstab work-precision --grid 16x16 --pin first-row --duration 0.1 --output precision");
+      "example: springstab work-precision --grid 16x16 --pin first-row --duration 0.1 --output precision\n"
+      "         the same with --resume after Ctrl-C or a crash");
   command->callback([&] {
     chosen = [&] {
       o.designed_damping = damping == "designed";
@@ -238,6 +249,7 @@ void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOption
   command->add_option("--steps", o.steps, "steps of each cell")->capture_default_str();
   command->add_flag("--quick", o.quick, "small scenes, few steps; 100 cells a side unless given");
   command->add_option("--output", o.output, "folder for the CSV files")->type_name("DIR");
+  add_resume(*command, o.resume);
   command->footer(
       "X-Y plane: one oscillator per cell and method. `differ` counts those that diverge where |λ| <= 1 or "
       "stay\n"
@@ -248,7 +260,8 @@ void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOption
       "would\n"
       "have given such a step. - where even the shortest step that was tried diverged.\n"
       "JSON: cells, disagreements, outside_band, plane[], safety[], switching, pendulum.\n\n"
-      "example: springstab divergence skirt.obj --pin 0-15 --output results");
+      "example: springstab divergence skirt.obj --pin 0-15 --output results\n"
+      "         the same with --resume after Ctrl-C or a crash");
   command->callback([&, command] {
     chosen = [&, command] {
       if (o.quick && command->count("--cells") == 0) o.cells = 100;
@@ -339,6 +352,7 @@ int run_command(int argc, const char* const* argv) {
   add_stress(app, common, stress, chosen);
   add_figures(app, common, figures, chosen);
 
+  exit_on_interrupt("nothing was saved");
   try {
     app.parse(argc, argv);
     return chosen();

@@ -77,6 +77,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options);
 struct ComplexityOptions {
   bool quick = false;
   std::string plots, output;  // folders; without output nothing is written
+  bool resume = false;
 };
 int run_complexity(const CommonOptions& common, const ComplexityOptions& options);
 
@@ -89,6 +90,7 @@ struct WorkPrecisionOptions {
   bool designed_damping = false;
   bool libraries = true;
   std::string plots, output;  // folders; no output: nothing is written
+  bool resume = false;
 };
 int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options);
 
@@ -100,6 +102,7 @@ struct DivergenceOptions {
   long steps = 1024;                // of each cell
   bool quick = false;
   std::string output;  // folder, empty for none
+  bool resume = false;
 };
 int run_divergence(const CommonOptions& common, const DivergenceOptions& options);
 

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "experiments/figure_list.h"
+#include "experiments/interrupt.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -59,6 +60,7 @@ int run_figures(const CommonOptions& common, const FiguresOptions& options) {
     drawn.erase("files");
     row.update(drawn);
     list.push_back(std::move(row));
+    exit_on_interrupt(text("%zu figures are in %s", list.size(), options.output.c_str()));
   }
   if (common.json) std::cout << Json{{"figures", list}}.dump(2) << '\n';
   return all_hold ? done : no_answer;

@@ -24,6 +24,18 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+Json json_of(const Counts& counts) {
+  return {{"force_evaluations", counts.force_evaluations},
+          {"hessian_assemblies", counts.hessian_assemblies},
+          {"block_products", counts.block_products},
+          {"cg_iterations", counts.cg_iterations}};
+}
+
+Counts counts_of(const Json& json) {
+  return {json.at("force_evaluations"), json.at("hessian_assemblies"), json.at("block_products"),
+          json.at("cg_iterations")};
+}
+
 std::string provenance() {
   return processor() + "; " SPRINGSTAB_COMPILER "; springstab " SPRINGSTAB_VERSION ", " SPRINGSTAB_COMMIT;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "experiments/output.h"
 #include "solvers/counting.h"
 #include "solvers/simulation.h"
 
@@ -11,6 +12,10 @@ namespace springstab {
 
 /// CPU time of this process [s].
 double cpu_seconds();
+
+/// The counts by their names.
+Json json_of(const Counts& counts);
+Counts counts_of(const Json& json);
 
 /// Where and how times were taken, for the foot of a figure: processor, compiler, flags, commit.
 std::string provenance();

@@ -1,8 +1,10 @@
 #include "experiments/output.h"
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
@@ -11,10 +13,26 @@
 #include <iostream>
 #include <locale>
 #include <stdexcept>
+#include <string_view>
 
 #include "solvers/io/input_error.h"
 
 namespace springstab {
+namespace {
+
+constexpr std::string_view part_suffix = ".part";
+
+// Whether an OutputFile of a process that is no more left it.
+bool is_abandoned(const std::string& name) {
+  const std::size_t part = name.rfind(part_suffix);
+  if (part == std::string::npos) return false;
+  pid_t process = 0;
+  const char *begin = name.data() + part + part_suffix.size(), *end = name.data() + name.size();
+  const auto [stopped, error] = std::from_chars(begin, end, process);
+  return error == std::errc() && stopped == end && kill(process, 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
 
 Json number(double value) {
   if (std::isnan(value)) throw std::logic_error("a result is not a number");
@@ -41,7 +59,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   const fs::file_status status = fs::status(path, ignored);
   if (fs::is_regular_file(status) && fs::is_symlink(path)) target_ = fs::canonical(path).string();
   const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
-  aside_ = in_place ? target_ : target_ + ".part" + std::to_string(getpid());
+  aside_ = in_place ? target_ : target_ + std::string(part_suffix) + std::to_string(getpid());
   stream_.open(aside_);
   if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
   stream_.imbue(std::locale::classic());
@@ -71,6 +89,8 @@ void make_folder(const std::string& path) {
   std::filesystem::create_directories(path, error);
   if (error || !std::filesystem::is_directory(path))
     throw InputError(path, 0, "cannot be made a folder" + (error ? ": " + error.message() : std::string()));
+  for (const auto& entry : std::filesystem::directory_iterator(path, error))
+    if (is_abandoned(entry.path().filename().string())) std::filesystem::remove(entry.path(), error);
 }
 
 Progress::Progress(std::string label, bool quiet)

@@ -39,7 +39,8 @@ class OutputFile {
   bool committed_ = false;
 };
 
-/// Creates the folder and its parents. Throws InputError if that is not possible.
+/// Creates the folder and its parents, and removes what killed processes left in it beside its place. Throws
+/// InputError if it cannot be made.
 void make_folder(const std::string& path);
 
 /// A bar on stderr for what takes more than a second, if stderr is a terminal and not `quiet`.

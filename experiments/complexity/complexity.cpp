@@ -5,6 +5,8 @@
 
 #include "experiments/complexity/complexity_figures.h"
 #include "experiments/experiments.h"
+#include "experiments/identity.h"
+#include "experiments/journal.h"
 #include "experiments/output.h"
 #include "solvers/io/input_error.h"
 
@@ -98,11 +100,7 @@ Json json_of(const HeatResult& p, Study study) {
           {"steps", p.steps},
           {"median_seconds", number(p.median_seconds())},
           {"cpu_seconds", seconds},
-          {"counts",
-           {{"force_evaluations", p.counts.force_evaluations},
-            {"hessian_assemblies", p.counts.hessian_assemblies},
-            {"block_products", p.counts.block_products},
-            {"cg_iterations", p.counts.cg_iterations}}},
+          {"counts", json_of(p.counts)},
           {"predicted_iterations", number(predicted_iterations(p) * static_cast<double>(p.steps))},
           {"rollbacks", p.rollbacks},
           {"halved_steps", p.halved_steps},
@@ -132,12 +130,15 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
                        "has no complexity.gp, expected the folder of the gnuplot scripts (--plots)");
     make_folder(options.output);
   }
+  Journal journal(options.output,
+                  identity_of("complexity", {{"quick", options.quick}, {"seed", common.seed}}, {}),
+                  options.resume, common.quiet);
   std::vector<StudyResult> studies;
   Json files = Json::array(), list = Json::array();
   bool finished = true;
   long rollbacks = 0;
   for (Study study : {Study::particles, Study::stiffness, Study::time_step, Study::cg_tolerance}) {
-    const StudyResult& result = studies.emplace_back(run_study(study, options.quick, common));
+    const StudyResult& result = studies.emplace_back(run_study(study, options.quick, common, journal));
     finished = finished && result.all_finished();
     rollbacks += result.rollbacks();
     list.push_back(json_of(result));
@@ -165,6 +166,7 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
                       sheets.back().heat.k0.value, abscissa(n.study, sheets.back()), verdict.c_str(),
                       provenance().c_str());
   }
+  if (std::cout.flush()) journal.finish();
   return finished ? done : no_answer;
 }
 

@@ -128,13 +128,14 @@ double predicted_iterations(const HeatResult& result) {
   return std::sqrt(1 + h * d + h * h * k0) * std::log(2 / result.heat.contestant.cg_tolerance) / 2;
 }
 
-StudyResult run_study(Study study, bool quick, const CommonOptions& common) {
+StudyResult run_study(Study study, bool quick, const CommonOptions& common, Journal& journal) {
   static constexpr const char* labels[] = {"cost of particles", "cost of stiffness", "cost of the step",
                                            "cost of accuracy"};
   Progress progress(labels[static_cast<int>(study)], common.quiet);
   StudyResult result{study, {}, quick ? 3 : 5};
-  for (HeatResult& heat : race(heats_of(study, quick, common), result.rounds, common,
-                               [&](double fraction) { progress.update(fraction); })) {
+  for (HeatResult& heat : race(
+           heats_of(study, quick, common), result.rounds, common,
+           [&](double fraction) { progress.update(fraction); }, journal)) {
     auto series = std::ranges::find(result.series, heat.heat.contestant.name, &Series::name);
     if (series == result.series.end()) series = result.series.insert(series, {heat.heat.contestant.name, {}});
     series->points.push_back(std::move(heat));

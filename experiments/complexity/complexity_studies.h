@@ -44,7 +44,9 @@ PowerLaw fit_seconds(Study study, const Series& series);
 double predicted_iterations(const HeatResult& result);
 
 /// `quick` takes fewer and smaller drapes, a shorter time and three rounds instead of five.
-StudyResult run_study(Study study, bool quick, const CommonOptions& common);
+/// Each run is a piece of the journal.
+StudyResult run_study(Study study, bool quick, const CommonOptions& common,
+                      Journal& journal = Journal::none());
 
 /// One row a run, in the order of series, points and rounds.
 void write_runs(const std::string& path, const StudyResult& result);

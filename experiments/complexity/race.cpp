@@ -56,6 +56,29 @@ HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
   return result;
 }
 
+Json json_of(const HeatResult& r) {
+  return {{"h", r.h},
+          {"alpha", r.alpha},
+          {"steps", r.steps},
+          {"counts", json_of(r.counts)},
+          {"rollbacks", r.rollbacks},
+          {"halved_steps", r.halved_steps},
+          {"finished", r.finished},
+          {"cpu_seconds", r.cpu_seconds}};
+}
+
+HeatResult result_of(const Heat& heat, const Json& r) {
+  return {heat,
+          r.at("h"),
+          r.at("alpha"),
+          r.at("steps"),
+          counts_of(r.at("counts")),
+          r.at("rollbacks"),
+          r.at("halved_steps"),
+          r.at("finished"),
+          r.at("cpu_seconds")};
+}
+
 bool same(const Counts& a, const Counts& b) {
   return a.force_evaluations == b.force_evaluations && a.hessian_assemblies == b.hessian_assemblies &&
          a.block_products == b.block_products && a.cg_iterations == b.cg_iterations;
@@ -79,18 +102,23 @@ double HeatResult::median_seconds() const {
 }
 
 std::vector<HeatResult> race(const std::vector<Heat>& heats, int rounds, const CommonOptions& common,
-                             const std::function<void(double)>& update) {
-  for (const Heat& heat : heats) run(heat, heat.duration / 20, common);
+                             const std::function<void(double)>& update, Journal& journal) {
+  if (!journal.has_next(heats.size() * static_cast<std::size_t>(rounds)))
+    for (const Heat& heat : heats) run(heat, heat.duration / 20, common);
   std::vector<HeatResult> results;
   for (int round = 0; round < rounds; ++round)
     for (std::size_t i = 0; i < heats.size(); ++i) {
-      const HeatResult one = run(heats[i], heats[i].duration, common);
+      const Heat& heat = heats[i];
+      const HeatResult one =
+          result_of(heat, journal.piece(text("%s on %dx%d, round %d", heat.contestant.name.c_str(),
+                                             heat.drape.side, heat.drape.side, round + 1),
+                                        [&] { return json_of(run(heat, heat.duration, common)); }));
       if (round == 0) {
         results.push_back(one);
       } else if (same(one.counts, results[i].counts) && one.steps == results[i].steps) {
         results[i].cpu_seconds.push_back(one.cpu_seconds[0]);
       } else {
-        throw std::logic_error(heats[i].contestant.name + " took other counts in another round");
+        throw std::logic_error(heat.contestant.name + " took other counts in another round");
       }
       if (update) update((round + static_cast<double>(i + 1) / static_cast<double>(heats.size())) / rounds);
     }

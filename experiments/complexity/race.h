@@ -10,6 +10,7 @@
 #include "analysis/spectrum.h"
 #include "experiments/complexity/drape.h"
 #include "experiments/experiments.h"
+#include "experiments/journal.h"
 #include "experiments/measured_run.h"
 #include "solvers/linear/conjugate_gradient.h"
 
@@ -55,8 +56,10 @@ struct HeatResult {
 };
 
 /// Every heat once a round, after a short warm-up of each. Linearizations use the projected Hessian. Throws
-/// std::logic_error should a contestant's counts differ between rounds. `update` gets the fraction done.
+/// std::logic_error should a contestant's counts differ between rounds. `update` gets the fraction done. Each
+/// run is a piece of the journal.
 std::vector<HeatResult> race(const std::vector<Heat>& heats, int rounds, const CommonOptions& common,
-                             const std::function<void(double)>& update = {});
+                             const std::function<void(double)>& update = {},
+                             Journal& journal = Journal::none());
 
 }  // namespace springstab

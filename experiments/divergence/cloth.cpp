@@ -107,10 +107,73 @@ double k0_growth(Subject& subject, const State<Vector>& start, double k0, double
   return largest;
 }
 
+// Of one method under one damping, which the scene must have by now. k0_growth is left to the caller.
+ClothStudy study_case(const std::string& name, Subject& subject, const State<Vector>& start, const Case& c,
+                      const ClothStudyOptions& options) {
+  Scene& scene = *subject.scene();
+  ClothStudy study;
+  NeededSafety needed{name, c.damping, std::string(c.method.name), c.modes.d0, c.modes.alpha, c.h_limit, 1,
+                      {},   {}};
+  bool bounded = true;
+  for (const double ratio : options.ratios) {
+    const double h = ratio * c.h_limit;
+    const auto keep = [&](bool linear, long steps, bool diverged) {
+      study.runs.push_back({name, c.damping, needed.method, linear, ratio, h, steps, diverged});
+    };
+    if (!c.method.linearized) {  // else the same as the method inside
+      const bool diverged = linear_run_diverges(scene, start, c, h, options.linear_steps, options.seed);
+      const bool disagrees = diverged != (ratio > 1);
+      study.linear_disagreements += disagrees;
+      // As for cells: growth that steps enough to pass the watch's threshold would have shown.
+      const double band = 2 * std::log(1e6) / static_cast<double>(options.linear_steps);
+      study.outside_band += disagrees && std::abs(spectral_radius_at(c, h) - 1) >= band;
+      keep(true, options.linear_steps, diverged);
+    }
+    const bool diverged = scene_run_diverges(subject, start, c, h, options.duration);
+    keep(false, plan(c.method, h, options.duration).steps, diverged);
+    bounded = bounded && !diverged;
+    if (bounded) needed.bounded_ratio = ratio;
+  }
+  if (needed.bounded_ratio)
+    needed.factor = safety_for_step(stability_region(c.method.name), c.modes,
+                                    std::min(1.0, *needed.bounded_ratio) * c.h_limit, most_safety);
+  study.needed.push_back(needed);
+  return study;
+}
+
+// What of a case is not known before it runs.
+Json json_of(const ClothStudy& study) {
+  Json runs = Json::array();
+  for (const ClothRun& r : study.runs)
+    runs.push_back(
+        {{"linear", r.linear}, {"ratio", r.ratio}, {"h", r.h}, {"steps", r.steps}, {"diverged", r.diverged}});
+  const NeededSafety& needed = study.needed.front();
+  return {{"runs", runs},
+          {"k0_growth", needed.k0_growth},
+          {"bounded_ratio", number(needed.bounded_ratio)},
+          {"factor", number(needed.factor)},
+          {"linear_disagreements", study.linear_disagreements},
+          {"outside_band", study.outside_band}};
+}
+
+void append(ClothStudy& study, const std::string& name, const Case& c, const Json& one) {
+  const std::string method(c.method.name);
+  for (const Json& r : one.at("runs"))
+    study.runs.push_back(
+        {name, c.damping, method, r.at("linear"), r.at("ratio"), r.at("h"), r.at("steps"), r.at("diverged")});
+  const auto optional = [&](const char* key) {
+    return one.at(key).is_null() ? std::nullopt : std::optional<double>(one.at(key));
+  };
+  study.needed.push_back({name, c.damping, method, c.modes.d0, c.modes.alpha, c.h_limit, one.at("k0_growth"),
+                          optional("bounded_ratio"), optional("factor")});
+  study.linear_disagreements += one.at("linear_disagreements").get<long>();
+  study.outside_band += one.at("outside_band").get<long>();
+}
+
 }  // namespace
 
 ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStudyOptions& options,
-                       const std::function<void(double)>& report) {
+                       const std::function<void(double)>& report, Journal& journal) {
   Scene& scene = *subject.scene();
   if (scene.has_own_damping())
     throw std::invalid_argument(name + " has damping of its own, expected none: this study sets it");
@@ -118,41 +181,17 @@ ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStu
   const double k0 = stiffest_mode(subject.structure(start), {.seed = options.seed}).value;
   ClothStudy study;
   const std::vector<Case> all = cases(k0);
-  double growth = 1;
-  std::string growth_of;
   for (const Case& c : all) {
-    scene.set_damping({c.modes.d0, c.modes.alpha});
-    scene.set_hessian(c.method.linearized ? Hessian::projected : Hessian::exact);
-    if (c.damping != growth_of) {
-      growth_of = c.damping;
-      growth = k0_growth(subject, start, k0, 0.5 * c.h_limit, options);
-    }
-    NeededSafety needed{
-        name, c.damping, std::string(c.method.name), c.modes.d0, c.modes.alpha, c.h_limit, growth, {}, {}};
-    bool bounded = true;
-    for (const double ratio : options.ratios) {
-      const double h = ratio * c.h_limit;
-      const auto keep = [&](bool linear, long steps, bool diverged) {
-        study.runs.push_back({name, c.damping, needed.method, linear, ratio, h, steps, diverged});
-      };
-      if (!c.method.linearized) {  // else the same as the method inside
-        const bool diverged = linear_run_diverges(scene, start, c, h, options.linear_steps, options.seed);
-        const bool disagrees = diverged != (ratio > 1);
-        study.linear_disagreements += disagrees;
-        // As for cells: growth that steps enough to pass the watch's threshold would have shown.
-        const double band = 2 * std::log(1e6) / static_cast<double>(options.linear_steps);
-        study.outside_band += disagrees && std::abs(spectral_radius_at(c, h) - 1) >= band;
-        keep(true, options.linear_steps, diverged);
-      }
-      const bool diverged = scene_run_diverges(subject, start, c, h, options.duration);
-      keep(false, plan(c.method, h, options.duration).steps, diverged);
-      bounded = bounded && !diverged;
-      if (bounded) needed.bounded_ratio = ratio;
-    }
-    if (needed.bounded_ratio)
-      needed.factor = safety_for_step(stability_region(c.method.name), c.modes,
-                                      std::min(1.0, *needed.bounded_ratio) * c.h_limit, most_safety);
-    study.needed.push_back(needed);
+    append(study, name, c, journal.piece(name + ", " + c.damping + ", " + std::string(c.method.name), [&] {
+      scene.set_damping({c.modes.d0, c.modes.alpha});
+      scene.set_hessian(c.method.linearized ? Hessian::projected : Hessian::exact);
+      const bool known = !study.needed.empty() && study.needed.back().damping == c.damping;
+      const double growth =
+          known ? study.needed.back().k0_growth : k0_growth(subject, start, k0, 0.5 * c.h_limit, options);
+      ClothStudy one = study_case(name, subject, start, c, options);
+      one.needed.front().k0_growth = growth;
+      return json_of(one);
+    }));
     report(static_cast<double>(study.needed.size()) / static_cast<double>(all.size()));
   }
   return study;

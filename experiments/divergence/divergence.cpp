@@ -2,11 +2,14 @@
 #include "experiments/divergence/divergence.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 
 #include "experiments/divergence/cloth.h"
 #include "experiments/divergence/examples.h"
 #include "experiments/experiments.h"
+#include "experiments/identity.h"
+#include "experiments/journal.h"
 #include "experiments/mesh_report.h"
 #include "experiments/output.h"
 #include "experiments/region.h"
@@ -16,24 +19,32 @@
 namespace springstab {
 namespace {
 
-Json plane(const CommonOptions& common, const DivergenceOptions& options, Progress& progress) {
+Json compared(const MethodInfo& info, const CommonOptions& common, const DivergenceOptions& options,
+              const std::string& path) {
+  const CellGrid grid{stability_region(info.name).natural_window(0.15), options.cells, options.cells};
+  const CellComparison c =
+      compare_cells(info.name, grid, options.steps, common.threads, path, CellsWritten::disagreeing);
+  return {{"method", info.name},
+          {"cells", c.cells},
+          {"steps", c.steps},
+          {"diverged", c.diverged},
+          {"disagreements", c.disagreements},
+          {"band", c.band},
+          {"outside_band", c.outside_band}};
+}
+
+Json plane(const CommonOptions& common, const DivergenceOptions& options, Journal& journal,
+           Progress& progress) {
   Json rows = Json::array();
   long methods = 0;
   for (const MethodInfo& info : all_methods()) methods += !info.linearized;
   for (const MethodInfo& info : all_methods()) {
     if (info.linearized) continue;  // the region of the method inside
-    const CellGrid grid{stability_region(info.name).natural_window(0.15), options.cells, options.cells};
-    const std::string path =
-        options.output.empty() ? "" : options.output + "/divergence_" + std::string(info.name) + ".csv";
-    const CellComparison c =
-        compare_cells(info.name, grid, options.steps, common.threads, path, CellsWritten::disagreeing);
-    rows.push_back({{"method", info.name},
-                    {"cells", c.cells},
-                    {"steps", c.steps},
-                    {"diverged", c.diverged},
-                    {"disagreements", c.disagreements},
-                    {"band", c.band},
-                    {"outside_band", c.outside_band}});
+    const std::string method(info.name);
+    const std::string path = options.output.empty() ? "" : options.output + "/divergence_" + method + ".csv";
+    if (journal.has_next(1) && !std::filesystem::exists(path)) compared(info, common, options, path);
+    rows.push_back(
+        journal.piece("cells of " + method, [&] { return compared(info, common, options, path); }));
     progress.update(0.3 * static_cast<double>(rows.size()) / static_cast<double>(methods));
   }
   return rows;
@@ -51,9 +62,15 @@ ClothStudyOptions study_of(const CommonOptions& common, const DivergenceOptions&
   return study;
 }
 
+using Scenes = std::vector<std::pair<std::string, Subject>>;
+
 // The built-in scenes, then those that were given.
-std::vector<std::pair<std::string, Subject>> subjects(const DivergenceOptions& options) {
-  std::vector<std::pair<std::string, Subject>> all;
+Scenes subjects(const DivergenceOptions& options) {
+  if (options.cells < 1 || options.cells > 10000)
+    throw InputError("--cells", 0, text("is %d, expected 1 to 10000 cells per side", options.cells));
+  if (options.steps < 100)
+    throw InputError("--steps", 0, text("is %ld, expected at least 100", options.steps));
+  Scenes all;
   const int side = options.quick ? 8 : 16;
   SceneDescription scene;
   scene.geometry = Grid{side, side};
@@ -76,16 +93,16 @@ std::vector<std::pair<std::string, Subject>> subjects(const DivergenceOptions& o
   return all;
 }
 
-ClothStudy cloth(const CommonOptions& common, const DivergenceOptions& options,
-                 std::vector<std::pair<std::string, Subject>>& scenes, Progress& progress) {
+ClothStudy cloth(const CommonOptions& common, const DivergenceOptions& options, Scenes& scenes,
+                 Journal& journal, Progress& progress) {
   const ClothStudyOptions study_options = study_of(common, options);
   ClothStudy all;
   double done_before = 0;
   for (auto& [name, subject] : scenes) {
     const double share = 0.7 / static_cast<double>(scenes.size());
-    const ClothStudy one = study_cloth(name, subject, study_options, [&](double part) {
-      progress.update(0.3 + done_before + share * part);
-    });
+    const ClothStudy one = study_cloth(
+        name, subject, study_options, [&](double part) { progress.update(0.3 + done_before + share * part); },
+        journal);
     done_before += share;
     all.runs.insert(all.runs.end(), one.runs.begin(), one.runs.end());
     all.needed.insert(all.needed.end(), one.needed.begin(), one.needed.end());
@@ -169,18 +186,12 @@ void print(const Json& report) {
                     p["symplectic_largest_energy"].get<double>());
 }
 
-}  // namespace
-
-Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
-  if (options.cells < 1 || options.cells > 10000)
-    throw InputError("--cells", 0, text("is %d, expected 1 to 10000 cells per side", options.cells));
-  if (options.steps < 100)
-    throw InputError("--steps", 0, text("is %ld, expected at least 100", options.steps));
-  auto scenes = subjects(options);
-  if (!options.output.empty()) make_folder(options.output);
+// Pieces of the journal: a method's cells; a scene under one damping by one method.
+Json report_of(const CommonOptions& common, const DivergenceOptions& options, Scenes scenes,
+               Journal& journal) {
   Progress progress("simulating", common.quiet);
-  const Json cells = plane(common, options, progress);
-  const ClothStudy study = cloth(common, options, scenes, progress);
+  const Json cells = plane(common, options, journal, progress);
+  const ClothStudy study = cloth(common, options, scenes, journal, progress);
   const Switching switching = switching_oscillator();
   const Pendulum pendulum = swinging_pendulum();
   if (!options.output.empty()) write(options.output, study, pendulum);
@@ -208,12 +219,31 @@ Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
   return report;
 }
 
+}  // namespace
+
+Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
+  Scenes scenes = subjects(options);
+  if (!options.output.empty()) make_folder(options.output);
+  return report_of(common, options, std::move(scenes), Journal::none());
+}
+
 int run_divergence(const CommonOptions& common, const DivergenceOptions& options) {
-  const Json report = divergence(common, options);
+  Scenes scenes = subjects(options);
+  Json inputs = Json::array();
+  for (const std::string& scene : options.scenes) inputs.push_back(contents_of(scene));
+  const Json settings{{"pin", options.pin},
+                      {"cells", options.cells},
+                      {"steps", options.steps},
+                      {"quick", options.quick},
+                      {"seed", common.seed}};
+  if (!options.output.empty()) make_folder(options.output);
+  Journal journal(options.output, identity_of("divergence", settings, inputs), options.resume, common.quiet);
+  const Json report = report_of(common, options, std::move(scenes), journal);
   if (common.json)
     std::cout << report.dump(2) << '\n';
   else
     print(report);
+  if (std::cout.flush()) journal.finish();
   return done;
 }
 

@@ -75,15 +75,36 @@ bool rounding_shows(const std::vector<ContestRun>& runs) {
   return last && before && before->trajectory < rounding_level && last->trajectory > before->trajectory;
 }
 
+Json json_of(const ContestRun& run) {
+  return {{"setting", run.setting},   {"outcome", static_cast<int>(run.outcome)},
+          {"compared", run.compared}, {"errors", run.errors ? json_of(*run.errors) : Json()},
+          {"steps", run.steps},       {"counts", json_of(run.counts)},
+          {"seconds", run.seconds}};
+}
+
+ContestRun run_of(const Json& json) {
+  ContestRun run{.setting = json.at("setting"),
+                 .outcome = static_cast<Outcome>(json.at("outcome").get<int>()),
+                 .compared = json.at("compared"),
+                 .errors = std::nullopt,
+                 .steps = json.at("steps"),
+                 .counts = counts_of(json.at("counts")),
+                 .seconds = json.at("seconds")};
+  if (const Json& e = json.at("errors"); !e.is_null())
+    run.errors = {e.at("position"), e.at("velocity"), e.at("trajectory"), e.at("energy")};
+  return run;
+}
+
 class Climb {
  public:
-  Climb(Problem& problem, const Reference& reference, const ContestOptions& options)
-      : problem_(problem), reference_(reference), options_(options) {}
+  Climb(Problem& problem, const Reference& reference, const ContestOptions& options, Journal& journal)
+      : problem_(problem), reference_(reference), options_(options), journal_(journal) {}
 
   std::vector<ContestRun> operator()(const Contestant& contestant) {
     std::vector<ContestRun> runs;
     for (double setting : contestant.settings) {
-      runs.push_back(run(contestant, setting));
+      runs.push_back(run_of(journal_.piece(contestant.name + text(" at %.17g", setting),
+                                           [&] { return json_of(run(contestant, setting)); })));
       const ContestRun& last = runs.back();
       if (last.outcome == Outcome::timed_out || rounding_shows(runs)) break;
       if (last.outcome == Outcome::finished && !last.compared) break;
@@ -119,6 +140,7 @@ class Climb {
   Problem& problem_;
   const Reference& reference_;
   const ContestOptions& options_;
+  Journal& journal_;
 };
 
 }  // namespace
@@ -135,6 +157,13 @@ const char* name(Outcome outcome) {
       break;
   }
   return "failed";
+}
+
+Json json_of(const Errors& e) {
+  return {{"position", number(e.position)},
+          {"velocity", number(e.velocity)},
+          {"trajectory", number(e.trajectory)},
+          {"energy", number(e.energy)}};
 }
 
 double ContestRun::median_seconds() const {
@@ -171,7 +200,7 @@ std::vector<Contestant> method_contestants(Problem& problem) {
 }
 
 ContestResult run_contest(Problem& problem, const std::string& cache, const ContestOptions& options,
-                          const CommonOptions& common) {
+                          const CommonOptions& common, Journal& journal) {
   Progress progress(problem.title(), common.quiet);
   ContestResult result{.title = problem.title(),
                        .duration = problem.duration(),
@@ -184,7 +213,7 @@ ContestResult run_contest(Problem& problem, const std::string& cache, const Cont
   std::vector<Contestant> contestants = method_contestants(problem);
   if (options.libraries && !problem.is_designed())  // libraries have no step to fit damping to
     for (Contestant& peer : peer_contestants(problem)) contestants.push_back(std::move(peer));
-  Climb climb(problem, result.reference, options);
+  Climb climb(problem, result.reference, options, journal);
   for (std::size_t i = 0; i < contestants.size(); ++i) {
     progress.update(static_cast<double>(i) / static_cast<double>(contestants.size()));
     std::vector<ContestRun> runs = climb(contestants[i]);

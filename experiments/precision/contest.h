@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/journal.h"
 #include "experiments/measured_run.h"
 #include "experiments/precision/reference.h"
 
@@ -21,6 +22,8 @@ enum class Outcome {
 };
 
 const char* name(Outcome outcome);
+
+Json json_of(const Errors& errors);
 
 /// One run, of a method at a step or of a library at a tolerance.
 struct Attempt {
@@ -87,9 +90,10 @@ std::vector<Contestant> method_contestants(Problem& problem);
 inline constexpr long contest_steps_per_linearization = 8;
 
 /// Each contestant goes through its settings until a run takes longer than the limit, or its errors are
-/// within 100 times the reference's own, or rounding makes them grow again.
+/// within 100 times the reference's own, or rounding makes them grow again. Each setting of a contestant is a
+/// piece of the journal.
 ContestResult run_contest(Problem& problem, const std::string& cache, const ContestOptions& options,
-                          const CommonOptions& common);
+                          const CommonOptions& common, Journal& journal = Journal::none());
 
 /// One row a run.
 void write_runs(const std::string& path, const ContestResult& result);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 
 #include "analysis/adaptive_integrator.h"
 #include "analysis/linear_motion.h"
+#include "experiments/fnv1a.h"
 #include "experiments/output.h"
 #include "experiments/precision/peers.h"
 #include "experiments/precision/scales.h"
@@ -71,20 +71,6 @@ Reference compute(Problem& problem) {
   reference.check = check(problem, reference.trajectory);
   return reference;
 }
-
-class Fnv1a {
- public:
-  void add(const void* data, std::size_t bytes) {
-    const auto* p = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < bytes; ++i) hash_ = (hash_ ^ p[i]) * 0x100000001b3u;
-  }
-  void add(double value) { add(&value, sizeof value); }
-  void add(const Vector& u) { add(u.data(), sizeof(double) * static_cast<std::size_t>(u.size())); }
-  std::string hex() const { return text("%016llx", static_cast<unsigned long long>(hash_)); }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
 
 // Of one kind of machine only, which a cache is anyway.
 constexpr char magic[] = "springstab reference 3\n";

@@ -4,6 +4,8 @@
 #include <iostream>
 
 #include "experiments/experiments.h"
+#include "experiments/identity.h"
+#include "experiments/journal.h"
 #include "experiments/mesh_report.h"
 #include "experiments/output.h"
 #include "experiments/precision/contest.h"
@@ -34,13 +36,6 @@ std::string title_of(const InputOptions& input) {
                                : std::filesystem::path(input.stiffness).stem().string();
 }
 
-Json json_of(const Errors& e) {
-  return {{"position", number(e.position)},
-          {"velocity", number(e.velocity)},
-          {"trajectory", number(e.trajectory)},
-          {"energy", number(e.energy)}};
-}
-
 Json json_of(const ContestRun& run, bool library) {
   Json seconds = Json::array();
   for (double s : run.seconds) seconds.push_back(number(s));
@@ -51,11 +46,7 @@ Json json_of(const ContestRun& run, bool library) {
           {"median_seconds", number(run.median_seconds())},
           {"cpu_seconds", seconds},
           {"steps", run.steps},
-          {"counts",
-           {{"force_evaluations", run.counts.force_evaluations},
-            {"hessian_assemblies", run.counts.hessian_assemblies},
-            {"block_products", run.counts.block_products},
-            {"cg_iterations", run.counts.cg_iterations}}},
+          {"counts", json_of(run.counts)},
           {"equivalents", run.equivalents()}};
 }
 
@@ -83,6 +74,15 @@ Json json_of(const ContestResult& result, const Json& files) {
           {"files", files}};
 }
 
+void print(const ContestResult& result, const Problem& problem) {
+  std::cout << text("%s: %ld unknowns, %g s; k0 = %.10g 1/s² (%.3g CPU-seconds)\n\n", result.title.c_str(),
+                    static_cast<long>(problem.start().x.size()), result.duration, result.k0,
+                    result.set_up_seconds)
+            << cheapest_table({result}) << '\n'
+            << reference_table({result}) << '\n'
+            << provenance() << '\n';
+}
+
 }  // namespace
 
 int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options) {
@@ -92,12 +92,18 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
   Problem problem(title_of(options.input), std::move(subject), options.duration, common);
   if (options.designed_damping) problem.design_damping();
   if (!options.output.empty()) make_folder(options.output);
+  const Json settings{
+      {"duration", options.duration},     {"damping", options.designed_damping ? "designed" : "own"},
+      {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
+      {"libraries", options.libraries},   {"seed", common.seed}};
+  Journal journal(options.output, identity_of("work-precision", settings, contents_of(options.input)),
+                  options.resume, common.quiet);
   const std::string missing = missing_peers();
   if (options.libraries && !missing.empty() && !common.quiet)
     std::cerr << "springstab: left out, for they were not found when this was built: " << missing << '\n';
   const ContestResult result =
       run_contest(problem, options.output.empty() ? "" : options.output + "/references",
-                  {options.time_limit, options.repetitions, options.libraries}, common);
+                  {options.time_limit, options.repetitions, options.libraries}, common, journal);
   Json files = Json::array();
   if (!options.output.empty())
     for (const std::string& file :
@@ -106,14 +112,10 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
 
   if (common.json) {
     std::cout << json_of(result, files).dump(2) << '\n';
-    return done;
+  } else {
+    print(result, problem);
   }
-  std::cout << text("%s: %ld unknowns, %g s; k0 = %.10g 1/s² (%.3g CPU-seconds)\n\n", result.title.c_str(),
-                    static_cast<long>(problem.system().size()), result.duration, result.k0,
-                    result.set_up_seconds)
-            << cheapest_table({result}) << '\n'
-            << reference_table({result}) << '\n'
-            << provenance() << '\n';
+  if (std::cout.flush()) journal.finish();
   return done;
 }
 

@@ -1,0 +1,47 @@
+#include "experiments/identity.h"
+
+#include <filesystem>
+
+#include "experiments/fnv1a.h"
+#include "experiments/measured_run.h"
+#include "solvers/io/input_error.h"
+#include "solvers/io/text_file.h"
+
+namespace springstab {
+
+Json identity_of(const std::string& command, const Json& options, const Json& inputs) {
+  return {{"program", provenance()}, {"command", command}, {"options", options}, {"inputs", inputs}};
+}
+
+Json contents_of(const std::string& file) {
+  Json contents{{"name", std::filesystem::path(file).filename().string()},
+                {"hash", hash_of(read_text_file(file))}};
+  if (!file.ends_with(".json")) return contents;
+  const Geometry geometry = read_scene_file(file).geometry;
+  if (const auto* mesh = std::get_if<std::string>(&geometry)) contents["mesh"] = contents_of(*mesh);
+  return contents;
+}
+
+Json contents_of(const InputOptions& input) {
+  Json contents{{"grid", input.grid},
+                {"spacing", number(input.spacing)},
+                {"material", input.material},
+                {"pin", input.pin}};
+  const std::pair<const char*, const std::string&> files[] = {{"file", input.file},
+                                                              {"stiffness", input.stiffness},
+                                                              {"mass", input.mass},
+                                                              {"damping-matrix", input.damping_matrix}};
+  for (const auto& [name, file] : files) contents[name] = file.empty() ? Json() : contents_of(file);
+  return contents;
+}
+
+void expect_same_run(const Json& kept, const Json& now, const std::string& path, long line) {
+  if (kept == now) return;
+  const Json difference = Json::diff(kept, now);
+  throw InputError(path, line,
+                   "was kept by another run, expected the same " +
+                       difference[0]["path"].get<std::string>().substr(1) +
+                       "; without --resume the run starts anew");
+}
+
+}  // namespace springstab

@@ -1,0 +1,24 @@
+// Which run something on disk belongs to: program, command, options, and inputs by their contents. What an
+// interrupted run kept serves that run and no other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/input/subject.h"
+#include "experiments/output.h"
+
+namespace springstab {
+
+/// Of a command with options and inputs (contents_of). Also says which program and machine it is.
+Json identity_of(const std::string& command, const Json& options, const Json& inputs);
+
+/// A hash of each file, with that of the mesh which a scene file names, and the input options as given.
+Json contents_of(const InputOptions& input);
+/// Of one scene file, mesh or matrix.
+Json contents_of(const std::string& file);
+
+/// Throws InputError(path, line, ...) that names the first difference unless both are the same.
+void expect_same_run(const Json& kept, const Json& now, const std::string& path, long line);
+
+}  // namespace springstab

@@ -1,0 +1,405 @@
+// Long runs that are stopped at any moment, by kill -9 or Ctrl-C: what they had finished is kept, and the
+// same command with --resume ends with the same bytes as one that was left alone, but for what a clock says.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <boost/test/unit_test.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <random>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "experiments/journal.h"
+#include "solvers/io/input_error.h"
+
+namespace fs = std::filesystem;
+using namespace springstab;
+
+namespace {
+
+std::string content_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& file, const std::string& content) {
+  std::ofstream(file, std::ios::binary) << content;
+}
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("springstab resume " + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+using Arguments = std::vector<std::string>;
+
+// The command as a process of its own, without a shell in between.
+class Command {
+ public:
+  Command(const fs::path& folder, const Arguments& arguments)
+      : out_(folder / "stdout"), err_(folder / "stderr") {
+    std::vector<char*> words{const_cast<char*>("springstab")};
+    for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    process_ = fork();
+    BOOST_REQUIRE(process_ >= 0);
+    if (process_ > 0) return;
+    const auto redirect = [](const fs::path& path, int to) {
+      dup2(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666), to);
+    };
+    redirect(out_, STDOUT_FILENO);
+    redirect(err_, STDERR_FILENO);
+    if (chdir(folder.c_str()) == 0) execv(SPRINGSTAB_COMMAND, words.data());
+    _exit(127);
+  }
+
+  void send(int signal) const { kill(process_, signal); }
+
+  // The exit status, or minus the signal that ended it.
+  int wait() const {
+    int status = 0;
+    BOOST_REQUIRE(waitpid(process_, &status, 0) == process_);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  }
+
+  std::string out() const { return content_of(out_); }
+  std::string err() const { return content_of(err_); }
+
+ private:
+  fs::path out_, err_;
+  pid_t process_;
+};
+
+// Without what is measured by a clock, and what is fitted to that.
+Json untimed(Json report) {
+  static const std::set<std::string> timed{"cpu_seconds", "median_seconds", "set_up_seconds",
+                                           "exponent",    "half_width",     "tables"};
+  if (report.is_object())
+    for (const std::string& key : timed) report.erase(key);
+  for (Json& part : report)
+    if (part.is_structured()) part = untimed(part);
+  return report;
+}
+
+// The fields of a line of CSV; commas within quotes separate nothing.
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields{""};
+  bool quoted = false;
+  for (char c : line) {
+    quoted = quoted != (c == '"');
+    if (c == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += c;
+  }
+  return fields;
+}
+
+// A CSV file without its columns of CPU seconds, by the headings that stand above them.
+std::string untimed_csv(const std::string& csv) {
+  static const std::set<std::string> timed{"cpu_seconds", "median", "least", "most", "relative"};
+  std::set<std::size_t> left_out;
+  std::istringstream in(csv);
+  std::string result;
+  for (std::string line; std::getline(in, line);) {
+    const std::vector<std::string> fields = fields_of(line);
+    std::set<std::size_t> headings;
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (timed.contains(fields[i])) headings.insert(i);
+    if (!headings.empty()) left_out = headings;
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (!left_out.contains(i)) result += fields[i] + ',';
+    result += '\n';
+  }
+  return result;
+}
+
+// A file's content as far as two runs must agree on it; of pictures with times in them that it is there.
+std::string comparable(const fs::path& file) {
+  const std::string type = file.extension();
+  if (type == ".png" || type == ".svg") return "";
+  return type == ".csv" ? untimed_csv(content_of(file)) : content_of(file);
+}
+
+// Of a run's results: not what it keeps for itself, nor what it writes aside.
+std::map<std::string, std::string> files_in(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  if (!fs::exists(folder)) return files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder);
+    if (entry.is_regular_file() && name.find(".part") == std::string::npos && !name.ends_with(".journal"))
+      files[name] = comparable(entry.path());
+  }
+  return files;
+}
+
+// What the same command gives when nothing stops it, and how long it takes.
+struct Undisturbed {
+  Json report;
+  std::map<std::string, std::string> files;
+  double seconds;
+
+  Undisturbed(const fs::path& folder, const Arguments& arguments) {
+    fs::create_directories(folder);
+    const auto start = std::chrono::steady_clock::now();
+    const Command command(folder, arguments);
+    BOOST_REQUIRE_EQUAL(command.wait(), 0);
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report = Json::parse(command.out());
+    files = files_in(folder / "out");
+  }
+};
+
+// Kills and resumes until there have been `kills`, then lets it end. `same` is called with each report.
+template <class Same>
+void kill_and_resume(const fs::path& folder, Arguments arguments, const Undisturbed& undisturbed, int kills,
+                     std::uint64_t seed, bool files_may_differ, Same same) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> delay(0, 2 * undisturbed.seconds / kills);
+  const auto run_once = [&](double seconds) {
+    fs::create_directories(folder);
+    const Command command(folder, arguments);
+    if (std::isfinite(seconds)) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+      command.send(SIGKILL);
+    }
+    const int status = command.wait();
+    const std::string err = command.err();
+    BOOST_TEST_CONTEXT(err) { BOOST_REQUIRE((status == 0 || status == -SIGKILL)); }
+    if (!files_may_differ)  // whatever is there is whole
+      for (const auto& [name, content] : files_in(folder / "out")) BOOST_TEST_CONTEXT(name) {
+          BOOST_TEST((content == undisturbed.files.at(name)));
+        }
+    if (status != 0) return std::pair(false, err);
+    same(Json::parse(command.out()));
+    if (!files_may_differ) BOOST_TEST((files_in(folder / "out") == undisturbed.files));
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / "out")) {
+      const std::string name = entry.path().filename();
+      BOOST_TEST_CONTEXT(name) {
+        BOOST_TEST((name.find(".part") == std::string::npos && name.find(".journal") == std::string::npos));
+      }
+    }
+    return std::pair(true, err);
+  };
+  int killed = 0, resumed = 0;
+  arguments.push_back("--resume");  // also of the first: there is nothing yet, and it begins
+  while (killed < kills) {
+    const auto [finished, err] = run_once(delay(random));
+    resumed += err.find("going on") != std::string::npos;
+    killed += !finished;
+    if (finished) fs::remove_all(folder);
+  }
+  BOOST_TEST(run_once(std::numeric_limits<double>::infinity()).first);
+  BOOST_TEST(resumed >= kills / 3);
+  BOOST_TEST_MESSAGE(arguments[0] << ": " << killed << " kills, resumed " << resumed << " times");
+}
+
+const Arguments divergence{"divergence", "--quick", "--cells",  "40", "--steps",
+                           "200",        "--json",  "--output", "out"};
+const Arguments complexity{"complexity", "--quick", "--json", "--output", "out"};
+const Arguments work_precision{
+    "work-precision", "--grid", "3x3",           "--pin", "first-row", "--duration", "0.02",
+    "--time-limit",   "0.02",   "--repetitions", "2",     "--json",    "--output",   "out"};
+
+// A journal of one's own, with numbers that no decimal fraction of few digits is.
+const Json identity{{"command", "count"}, {"options", {{"until", 3}, {"half", 0.5}}}};
+Json counted(Journal& journal, int& computed, int until = 3) {
+  Json all = Json::array();
+  for (int i = 1; i <= until; ++i)
+    all.push_back(journal.piece("number " + std::to_string(i), [&] {
+      ++computed;
+      return Json{{"third", i / 3.}, {"tiny", i * 5e-324}, {"none", nullptr}};
+    }));
+  return all;
+}
+
+}  // namespace
+
+BOOST_FIXTURE_TEST_SUITE(resume, Folder)
+
+BOOST_AUTO_TEST_CASE(a_killed_divergence_study_ends_as_if_it_had_not_been) {
+  const Undisturbed undisturbed(path() / "left alone", divergence);
+  kill_and_resume(path() / "killed", divergence, undisturbed, 12, 1, false,
+                  [&](const Json& report) { BOOST_TEST((report == undisturbed.report)); });
+}
+
+BOOST_AUTO_TEST_CASE(a_killed_complexity_study_ends_as_if_it_had_not_been) {
+  const Undisturbed undisturbed(path() / "left alone", complexity);
+  const Json expected = untimed(undisturbed.report);
+  BOOST_TEST(expected.at("studies").size() == 4);
+  kill_and_resume(path() / "killed", complexity, undisturbed, 12, 2, false,
+                  [&](const Json& report) { BOOST_TEST((untimed(report) == expected)); });
+}
+
+// How far a contestant gets is for the clock to say; as far as two runs both get, they agree.
+BOOST_AUTO_TEST_CASE(a_killed_contest_ends_as_if_it_had_not_been) {
+  const Undisturbed undisturbed(path() / "left alone", work_precision);
+  const auto finished_runs = [](const Json& contestant) {
+    Json runs = Json::array();
+    for (const Json& run : contestant.at("runs"))
+      if (run.at("outcome") == "finished") runs.push_back(untimed(run));
+    return runs;
+  };
+  kill_and_resume(path() / "killed", work_precision, undisturbed, 8, 3, true, [&](const Json& report) {
+    const Json &left_alone = undisturbed.report.at("contestants"), &resumed = report.at("contestants");
+    BOOST_TEST((report.at("reference") == undisturbed.report.at("reference")));
+    BOOST_REQUIRE_EQUAL(resumed.size(), left_alone.size());
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < resumed.size(); ++i) {
+      BOOST_TEST((resumed[i].at("name") == left_alone[i].at("name")));
+      const Json a = finished_runs(left_alone[i]), b = finished_runs(resumed[i]);
+      for (std::size_t j = 0; j < std::min(a.size(), b.size()); ++j, ++compared) BOOST_TEST((a[j] == b[j]));
+    }
+    BOOST_TEST(compared > 50);
+  });
+}
+
+// What was kept is what is reported, its times included.
+BOOST_AUTO_TEST_CASE(ctrl_c_says_what_was_saved) {
+  for (const Arguments& arguments : {divergence, complexity, work_precision})
+    BOOST_TEST_CONTEXT(arguments[0]) {
+      const fs::path journal = path() / "out" / (arguments[0] + ".journal");
+      const auto pieces = [&] {
+        const std::string lines = content_of(journal);
+        return std::count(lines.begin(), lines.end(), '\n') - 1;
+      };
+      const Command command(path(), arguments);
+      for (int i = 0; i < 10000 && pieces() < 3; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      command.send(SIGINT);
+      BOOST_TEST(command.wait() == 130);
+      BOOST_TEST(pieces() >= 3);
+      const std::string err = command.err();
+      BOOST_TEST(err.find("interrupted; ") != std::string::npos);
+      BOOST_TEST(err.find(" finished pieces are saved in out/" + arguments[0] + ".journal") !=
+                 std::string::npos);
+      BOOST_TEST(command.out().empty());
+
+      Arguments other = arguments;
+      other.insert(other.end(), {"--resume", "--seed", "2"});
+      const Command refused(path(), other);
+      BOOST_TEST(refused.wait() == 2);
+      BOOST_TEST(refused.err().find("expected the same options/seed") != std::string::npos);
+      BOOST_TEST(pieces() >= 3);
+    }
+  const Command nowhere(path(), {"complexity", "--quick"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  nowhere.send(SIGINT);
+  BOOST_TEST(nowhere.wait() == 130);
+  BOOST_TEST(nowhere.err().find("nothing was saved") != std::string::npos);
+  const Command homeless(path(), {"complexity", "--resume"});
+  BOOST_TEST(homeless.wait() == 2);
+  BOOST_TEST(homeless.err().find("--output") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_journal_computes_what_it_lacks_and_nothing_else) {
+  int computed = 0;
+  const Json all = counted(Journal::none(), computed);
+  BOOST_TEST(computed == 3);
+  const fs::path file = path() / "count.journal";
+  {
+    Journal journal(path(), identity, false, true);
+    counted(journal, computed, 2);
+    BOOST_CHECK_THROW(Journal(path(), identity, true, true), InputError);  // in use
+  }
+  const std::string two = content_of(file);
+  // The third line whole, torn anywhere, or absent.
+  computed = 0;
+  {
+    Journal journal(path(), identity, true, true);
+    BOOST_TEST((journal.has_next(2) && !journal.has_next(3)));
+    BOOST_TEST((counted(journal, computed) == all));
+  }
+  BOOST_TEST(computed == 1);
+  const std::string three = content_of(file);
+  BOOST_TEST(three.starts_with(two));
+  for (std::size_t length = two.size(); length < three.size(); ++length) {
+    write(file, three.substr(0, length));
+    computed = 0;
+    Journal journal(path(), identity, true, true);
+    BOOST_TEST((counted(journal, computed) == all));
+    BOOST_TEST(computed == 1);
+    BOOST_TEST((content_of(file) == three));
+  }
+  Journal journal(path(), identity, true, true);
+  BOOST_TEST(journal.has_next(3));
+  journal.finish();
+  BOOST_TEST(!fs::exists(file));
+}
+
+BOOST_AUTO_TEST_CASE(what_a_killed_process_left_aside_is_removed_and_nothing_else) {
+  const pid_t gone = fork();
+  if (gone == 0) _exit(0);
+  BOOST_REQUIRE(waitpid(gone, nullptr, 0) == gone);
+  const std::string abandoned = "a.csv.part" + std::to_string(gone);
+  const std::set<std::string> others{"a.csv", "b.part", "a.csv.part" + std::to_string(getpid()),
+                                     abandoned + "x"};
+  for (const std::string& name : others) write(path() / name, "1");
+  write(path() / abandoned, "1");
+  make_folder(path());
+  std::set<std::string> left;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path()))
+    left.insert(entry.path().filename());
+  BOOST_TEST((left == others));
+}
+
+BOOST_AUTO_TEST_CASE(a_journal_of_another_run_or_a_damaged_one_is_refused) {
+  const fs::path file = path() / "count.journal";
+  int computed = 0;
+  {
+    Journal journal(path(), identity, false, true);
+    counted(journal, computed);
+    BOOST_CHECK_THROW(journal.piece("not a number",
+                                    [] {
+                                      return Json{{"x", std::nan("")}};
+                                    }),
+                      std::logic_error);
+  }
+  const std::string whole = content_of(file);
+  BOOST_TEST(whole.find("null,") == std::string::npos);  // NaN would be one
+  const auto refused = [&](const Json& who, const std::string& reason) {
+    try {
+      const Journal journal(path(), who, true, true);
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      BOOST_TEST_CONTEXT(message) {
+        BOOST_TEST(message.starts_with(file.string() + ':'));
+        BOOST_TEST(message.find(reason) != std::string::npos);
+      }
+      return;
+    }
+    BOOST_ERROR("not refused: " + reason);
+  };
+  Json other = identity;
+  other["options"]["until"] = 4;
+  refused(other, "options/until");
+  BOOST_TEST((content_of(file) == whole));
+  for (const std::size_t place : {std::size_t{3}, whole.size() / 3, whole.size() / 2, whole.size() - 3}) {
+    std::string damaged = whole;
+    damaged[place] = damaged[place] == '1' ? '2' : '1';
+    write(file, damaged);
+    refused(identity, "is damaged");
+  }
+  write(file, whole);
+  Journal journal(path(), identity, true, true);
+  BOOST_CHECK_THROW(journal.piece("number 2", [] { return Json(); }), InputError);  // the first one is next
+}
+
+BOOST_AUTO_TEST_SUITE_END()

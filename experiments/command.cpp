@@ -152,6 +152,7 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
       ->add_option("--cg-tolerance", o.cg_tolerance,
                    "relative residual of implicit Euler's conjugate gradients")
       ->capture_default_str();
+  add_resume(*command, o.resume);
   command->footer(
       "The step is shortened so that a whole number of steps ends at the duration. Units are SI. Matrices "
       "start from a\n"
@@ -161,7 +162,8 @@ void add_simulate(CLI::App& app, const CommonOptions& common, SimulateOptions& o
       "it has there; a linearized method then also linearizes twice as often.\n"
       "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
       "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
-      "--output drape");
+      "--output drape\n"
+      "         the same with --resume after Ctrl-C or a crash");
   command->callback([&] {
     chosen = [&] {
       o.designed_damping = damping == "designed";

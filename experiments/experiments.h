@@ -70,6 +70,7 @@ struct SimulateOptions {
   int frames = 100;
   double cg_tolerance = 1e-6;
   bool direct = false;  // a factorization instead of conjugate gradients
+  bool resume = false;
 };
 int run_simulate(const CommonOptions& common, const SimulateOptions& options);
 

@@ -1,11 +1,14 @@
 #include "experiments/identity.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "experiments/fnv1a.h"
 #include "experiments/measured_run.h"
 #include "solvers/io/input_error.h"
-#include "solvers/io/text_file.h"
 
 namespace springstab {
 
@@ -13,9 +16,17 @@ Json identity_of(const std::string& command, const Json& options, const Json& in
   return {{"program", provenance()}, {"command", command}, {"options", options}, {"inputs", inputs}};
 }
 
+std::string bytes_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string all{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw InputError(path, 0, std::string("cannot be read: ") + std::strerror(errno));
+  return all;
+}
+
 Json contents_of(const std::string& file) {
-  Json contents{{"name", std::filesystem::path(file).filename().string()},
-                {"hash", hash_of(read_text_file(file))}};
+  Json contents{{"name", std::filesystem::path(file).filename().string()}};
+  if (!std::filesystem::is_regular_file(file)) return contents;
+  contents["hash"] = hash_of(bytes_of(file));
   if (!file.ends_with(".json")) return contents;
   const Geometry geometry = read_scene_file(file).geometry;
   if (const auto* mesh = std::get_if<std::string>(&geometry)) contents["mesh"] = contents_of(*mesh);

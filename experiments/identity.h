@@ -13,10 +13,16 @@ namespace springstab {
 /// Of a command with options and inputs (contents_of). Also says which program and machine it is.
 Json identity_of(const std::string& command, const Json& options, const Json& inputs);
 
+/// All bytes of a file; throws InputError if it cannot be read.
+std::string bytes_of(const std::string& path);
+
 /// A hash of each file, with that of the mesh which a scene file names, and the input options as given.
 Json contents_of(const InputOptions& input);
-/// Of one scene file, mesh or matrix.
+/// Of one scene file, mesh or matrix. A pipe cannot be read again: it counts by its name.
 Json contents_of(const std::string& file);
+
+/// What is wrong with --resume alone.
+inline constexpr char needs_output[] = "needs --output, the folder where a run keeps what it has finished";
 
 /// Throws InputError(path, line, ...) that names the first difference unless both are the same.
 void expect_same_run(const Json& kept, const Json& now, const std::string& path, long line);

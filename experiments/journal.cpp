@@ -5,11 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <stdexcept>
 
 #include "experiments/fnv1a.h"
@@ -43,8 +40,7 @@ Journal& Journal::none() {
 
 Journal::Journal(const std::string& folder, const Json& identity, bool resume, bool quiet) {
   if (folder.empty()) {
-    if (resume)
-      throw InputError("--resume", 0, "needs --output, the folder where a run keeps what it has finished");
+    if (resume) throw InputError("--resume", 0, needs_output);
     exit_on_interrupt("nothing was saved (with --output it would have been)");
     return;
   }
@@ -72,8 +68,7 @@ Journal::File::~File() {
 
 // Leaves the file at the end of its last whole line.
 void Journal::read(const Json& identity) {
-  std::ifstream in(path_, std::ios::binary);
-  const std::string all{std::istreambuf_iterator<char>(in), {}};
+  const std::string all = bytes_of(path_);
   std::size_t begin = 0;
   for (std::size_t end; (end = all.find('\n', begin)) != std::string::npos; begin = end + 1) {
     const long line = static_cast<long>(kept_.size()) + 1;
@@ -85,10 +80,7 @@ void Journal::read(const Json& identity) {
 }
 
 void Journal::append(const Json& json) {
-  const Json flat = json.flatten();
-  for (const auto& [key, value] : flat.items())
-    if (value.is_number_float() && !std::isfinite(value.get<double>()))
-      throw std::logic_error(key + " of a piece is not finite");
+  if (!all_finite(json)) throw std::logic_error("a number in a piece is not finite");
   const std::string content = json.dump(), line = hash_of(content) + ' ' + content + '\n';
   for (std::size_t done = 0; done < line.size();) {
     const ssize_t n = write(file_.descriptor, line.data() + done, line.size() - done);

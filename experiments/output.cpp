@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -42,6 +43,12 @@ Json number(double value) {
 
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
+bool all_finite(const Json& json) {
+  if (json.is_structured())
+    return std::ranges::all_of(json, [](const Json& part) { return all_finite(part); });
+  return !json.is_number_float() || std::isfinite(json.get<double>());
+}
+
 std::string text(const char* format, ...) {
   va_list arguments, again;
   va_start(arguments, format);
@@ -66,8 +73,28 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   stream_.precision(17);
 }
 
+OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
+    : path_(path), target_(path), aside_(path + std::string(part_suffix)), kept_(true) {
+  if (bytes > 0) {
+    std::error_code error;
+    if (const std::uintmax_t there = std::filesystem::file_size(aside_, error); error || there < bytes)
+      throw InputError(aside_, 0, "has less than the run had written; without --resume the run starts anew");
+    std::filesystem::resize_file(aside_, bytes, error);
+  }
+  stream_.open(aside_, bytes > 0 ? std::ios::app : std::ios::trunc);
+  if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
+  stream_.imbue(std::locale::classic());
+  stream_.precision(17);
+}
+
+std::uintmax_t OutputFile::flush() {
+  stream_.flush();
+  if (!stream_) throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno));
+  return std::filesystem::file_size(aside_);
+}
+
 OutputFile::~OutputFile() {
-  if (committed_ || aside_ == target_) return;
+  if (committed_ || kept_ || aside_ == target_) return;
   stream_.close();
   std::error_code ignored;
   std::filesystem::remove(aside_, ignored);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,9 @@ using Json = nlohmann::ordered_json;
 Json number(double value);
 Json number(const std::optional<double>& value);
 
+/// Whether every number in it is finite.
+bool all_finite(const Json& json);
+
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...);
 
@@ -25,18 +29,23 @@ class OutputFile {
  public:
   /// Throws InputError if the file cannot be created.
   explicit OutputFile(const std::string& path);
+  /// Goes on after the first `bytes` of what is beside its place, in path.part, and leaves that there until
+  /// commit(). Throws InputError also where less is there.
+  OutputFile(const std::string& path, std::uintmax_t bytes);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   std::ostream& stream() { return stream_; }
+  /// Hands everything to the system; returns how many bytes there are.
+  std::uintmax_t flush();
   /// Throws InputError if anything could not be written.
   void commit();
 
  private:
   std::string path_, target_, aside_;  // as given; what is written in the end; until then
   std::ofstream stream_;
-  bool committed_ = false;
+  bool committed_ = false, kept_ = false;
 };
 
 /// Creates the folder and its parents, and removes what killed processes left in it beside its place. Throws

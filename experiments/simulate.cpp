@@ -1,13 +1,15 @@
 // `springstab simulate`: runs a scene or a system of matrices with a step that is known to be stable.
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <iostream>
 
 #include "analysis/method_limits.h"
+#include "experiments/checkpoint.h"
 #include "experiments/experiments.h"
 #include "experiments/explain.h"
 #include "experiments/frames.h"
+#include "experiments/identity.h"
+#include "experiments/interrupt.h"
 #include "experiments/measured_run.h"
 #include "experiments/mesh_report.h"
 #include "experiments/output.h"
@@ -17,20 +19,6 @@
 
 namespace springstab {
 namespace {
-
-volatile std::sig_atomic_t stop_requested = 0;
-
-// Ctrl-C ends the run after the current step, while one of these lives.
-class StopOnInterrupt {
- public:
-  StopOnInterrupt() : previous_(std::signal(SIGINT, [](int) { stop_requested = 1; })) {}
-  ~StopOnInterrupt() { std::signal(SIGINT, previous_); }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-
- private:
-  void (*previous_)(int);
-};
 
 void check(const SimulateOptions& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
@@ -43,16 +31,44 @@ void check(const SimulateOptions& options) {
   positive("--relinearize", options.relinearize, " of seconds");
   positive("--cg-tolerance", options.cg_tolerance, "");
   if (options.frames < 1) throw InputError("--frames", 0, text("is %d, expected at least 1", options.frames));
+  if (options.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
+}
+
+// All that decides what a run does and writes.
+Json identity(const CommonOptions& common, const SimulateOptions& o) {
+  if (o.output.empty()) return {};  // nothing is kept
+  return identity_of("simulate",
+                     {{"method", o.method},
+                      {"duration", o.duration},
+                      {"step", number(o.step)},
+                      {"max-step", number(o.max_step)},
+                      {"safety", o.safety},
+                      {"relinearize", o.relinearize},
+                      {"damping", o.designed_damping ? "designed" : "own"},
+                      {"hessian", o.projected_hessian ? "projected" : "exact"},
+                      {"solver", o.direct ? "direct" : "cg"},
+                      {"cg-tolerance", o.cg_tolerance},
+                      {"format", o.format},
+                      {"frames", o.frames},
+                      {"seed", common.seed}},
+                     contents_of(o.input));
 }
 
 // Writes evenly spaced frames of a scene, or rows of a CSV file for matrices.
 class Recorder {
  public:
-  Recorder(Subject& subject, const SimulateOptions& options) : subject_(subject), options_(options) {
-    if (options.output.empty()) return;
-    make_folder(options.output);
-    if (subject.scene()) return;
-    csv_.emplace(options.output + "/trajectory.csv");
+  // Goes on after what another one kept(), if that is not null.
+  Recorder(Subject& subject, const SimulateOptions& options, const Json& kept)
+      : subject_(subject), options_(options) {
+    if (!kept.is_null()) {
+      for (const Json& frame : kept.at("frames")) frames_.push_back({frame[0], frame[1]});
+      due_ = kept.at("due");
+      most_ = kept.at("most");
+    }
+    if (options.output.empty() || subject.scene()) return;
+    csv_.emplace(options.output + "/trajectory.csv",
+                 kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>());
+    if (!kept.is_null()) return;
     csv_->stream() << "t,kinetic_energy,potential_energy";
     for (Eigen::Index i = 0; i < subject.system().size(); ++i) csv_->stream() << ",x" << i + 1;
     csv_->stream() << '\n';
@@ -78,6 +94,16 @@ class Recorder {
     while (next_time() <= t && due_ <= options_.frames) ++due_;
   }
 
+  // Where it is; what was recorded is in the system's hands by then.
+  Json kept() {
+    Json frames = Json::array();
+    for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due});
+    return {{"frames", frames},
+            {"due", due_},
+            {"most", most_},
+            {"csv_bytes", csv_ ? Json(csv_->flush()) : Json()}};
+  }
+
   void finish() {
     if (csv_) csv_->commit();
     for (int frame = written(); frame < most_; ++frame)  // of what was undone and not reached again
@@ -100,6 +126,15 @@ class Recorder {
   std::vector<Frame> frames_;
   int due_ = 0, most_ = 0;
 };
+
+std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,
+                  const SimulateOptions& options) {
+  if (options.output.empty()) return "nothing was saved (with --output it would have been)";
+  return text(
+      "%d frames and the run up to t = %.6g s are saved in %s; the same command goes on there with "
+      "--resume",
+      recorder.written(), checkpoint.saved_until(), options.output.c_str());
+}
 
 const char* outcome(StepStatus status) {
   switch (status) {
@@ -151,18 +186,40 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
   if (options.explain && !common.json) std::cout << explanation_table(explanation);
   System& system = subject.system();
-  Recorder recorder(subject, options);
+  const EnergyWatch watch = chooser.watch(start);
+  if (!options.output.empty()) make_folder(options.output);
+  CheckpointFile checkpoint(options.output, identity(common, options), options.resume, common.quiet);
+  KeptRun begin = checkpoint.read().value_or(KeptRun{start_of(*plan), start, {}});
+  Json& kept = begin.others;
+  if (!kept.is_null()) {
+    chooser.go_on(kept.at("chooser"));
+    if (!common.quiet) std::cerr << text("springstab: going on at t = %.6g s\n", begin.run.time);
+  }
+  Recorder recorder(subject, options, kept.is_null() ? Json() : kept.at("recorder"));
+  CountingSystem counted(system, kept.is_null() ? Counts() : counts_of(kept.at("counts")));
+  const double cpu_before = cpu_seconds() - (kept.is_null() ? 0 : kept.at("cpu_seconds").get<double>());
+  State<Vector> state = std::move(begin.state);
   Progress progress("simulating", common.quiet);
-  const StopOnInterrupt interrupt_guard;
-  const auto [result, counts, cpu, state] = measured_run(
-      system, options.method, *plan, chooser.watch(start), start,
-      [&](const SimulationResult& so_far, const State<Vector>& s) {
+  const StopOnInterrupt interrupt;
+  const SimulationResult result = resume_simulation(
+      counted, *make_stepper(options.method), std::move(begin.run), watch, state,
+      [&](const RunSoFar& so_far, const State<Vector>& s) {
         recorder.record(so_far.time, s);
+        if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
+          checkpoint.save({so_far,
+                           s,
+                           {{"chooser", chooser.kept()},
+                            {"recorder", recorder.kept()},
+                            {"counts", json_of(counted.counts())},
+                            {"cpu_seconds", cpu_seconds() - cpu_before}}});
         if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
-        return stop_requested == 0;
+        return !interrupt.requested();
       },
       chooser.policy());
-  recorder.finish();
+  const double cpu = cpu_seconds() - cpu_before;
+  const Counts counts = counted.counts();
+  const bool stopped = interrupt.requested();
+  if (!stopped) recorder.finish();
 
   const bool diverged = result.status == StepStatus::diverged;
   const auto energy = [&](const State<Vector>& s) {
@@ -170,7 +227,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   };
   const double energy_before = energy(start), energy_after = energy(state);
   Json report{{"method", options.method},
-              {"status", stop_requested ? "interrupted" : outcome(result.status)},
+              {"status", stopped ? "interrupted" : outcome(result.status)},
               {"step", h},
               {"steps", result.steps},
               {"diverged", diverged},
@@ -200,7 +257,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   } else {
     std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps,
                       h, cpu);
-    if (stop_requested) {
+    if (stopped) {
       std::cout << text("interrupted at t = %.6g s\n", result.time);
     } else if (diverged) {
       std::cout << text("diverged at t = %.6g s\n", result.failed_at);
@@ -228,10 +285,11 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     if (recorder.written() > 0)
       std::cout << text("%d frames in %s\n", recorder.written(), options.output.c_str());
   }
-  if (stop_requested) {
-    std::cerr << text("springstab: interrupted; saved %d frames\n", recorder.written());
+  if (stopped) {
+    std::cerr << "springstab: interrupted; " << saved(recorder, checkpoint, options) << '\n';
     return interrupted;
   }
+  if (std::cout.flush()) checkpoint.finish();
   return diverged ? run_diverged : result.status == StepStatus::done ? done : no_answer;
 }
 

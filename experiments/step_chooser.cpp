@@ -123,6 +123,26 @@ std::optional<StepPlan> StepChooser::after_divergence(double time, const State<V
   return plan(step, options_.duration - time);
 }
 
+Json StepChooser::kept() {
+  return {{"h", h_},
+          {"alpha", subject_.damping().alpha},
+          {"relinearize", relinearize_},
+          {"rollbacks", rollbacks_},
+          {"halved_steps", halved_steps_},
+          {"failures_in_a_row", failures_in_a_row_},
+          {"steps_at_last_failure", steps_at_last_failure_}};
+}
+
+void StepChooser::go_on(const Json& kept) {
+  h_ = kept.at("h");
+  if (designed_) subject_.set_alpha(kept.at("alpha"));
+  relinearize_ = kept.at("relinearize");
+  rollbacks_ = kept.at("rollbacks");
+  halved_steps_ = kept.at("halved_steps");
+  failures_in_a_row_ = kept.at("failures_in_a_row");
+  steps_at_last_failure_ = kept.at("steps_at_last_failure");
+}
+
 StepPolicy StepChooser::policy() {
   return [this](const SimulationResult& so_far, const State<Vector>& state,
                 const StepPlan& failed) -> std::optional<StepPlan> {

@@ -6,6 +6,7 @@
 
 #include "experiments/experiments.h"
 #include "experiments/input/subject.h"
+#include "experiments/output.h"
 #include "solvers/simulation.h"
 
 namespace springstab {
@@ -40,6 +41,10 @@ class StepChooser {
 
   /// For simulate(); refers to this object.
   StepPolicy policy();
+
+  /// What it has decided so far, and a chooser that has planned the same first step brought there.
+  Json kept();
+  void go_on(const Json& kept);
 
   double present_step() const { return h_; }
   double present_relinearize() const { return relinearize_; }

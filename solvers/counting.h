@@ -16,7 +16,7 @@ struct Counts {
 /// Passes everything on to `system`, which must outlive it, and counts.
 class CountingSystem final : public System {
  public:
-  explicit CountingSystem(System& system) : system_(system) {}
+  explicit CountingSystem(System& system, const Counts& so_far = {}) : system_(system), counts_(so_far) {}
   const Counts& counts() const { return counts_; }
 
   Eigen::Index size() const override { return system_.size(); }

@@ -1,28 +1,22 @@
 #include "solvers/simulation.h"
 
 #include <cmath>
-#include <vector>
 
 namespace springstab {
 namespace {
 
 constexpr long least_checkpoint_distance = 16;  // steps
 
-/// A plan that is being carried out.
-struct Stage {
-  double start;  // [s]
-  StepPlan plan;
-  long done = 0;
-  long checkpoint_distance = whole_linearizations(plan);
+double time_of(const Stage& stage, long step) {
+  return stage.start + static_cast<double>(step) * stage.plan.h;
+}
 
-  double time_of(long step) const { return start + static_cast<double>(step) * plan.h; }
-  bool at_checkpoint() const { return done == plan.steps || done % checkpoint_distance == 0; }
-
-  static long whole_linearizations(const StepPlan& plan) {
-    const long each = plan.steps_per_linearization;
-    return (least_checkpoint_distance + each - 1) / each * each;
-  }
-};
+// At whole linearizations, and at the end.
+bool at_checkpoint(const Stage& stage) {
+  const long each = stage.plan.steps_per_linearization;
+  const long distance = (least_checkpoint_distance + each - 1) / each * each;
+  return stage.done == stage.plan.steps || stage.done % distance == 0;
+}
 
 /// Where a run goes back to.
 struct Checkpoint {
@@ -52,13 +46,23 @@ bool EnergyWatch::gained(double total_energy, double t) const {
   return !(total_energy - initial_total <= largest_gain * bound * bound);
 }
 
+RunSoFar start_of(const StepPlan& plan) {
+  RunSoFar run;
+  run.stages = {{0, plan}};
+  return run;
+}
+
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
-  std::vector<Stage> stages{{0, plan}};  // the last one is carried out, for one step of the one before it
-  SimulationResult result;
-  Checkpoint checkpoint{state};
-  stepper.restart(plan.steps_per_linearization);
-  if (observe && !observe(result, state)) return result;
+  return resume_simulation(system, stepper, start_of(plan), watch, state, observe, policy);
+}
+
+SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
+                                   State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
+  std::vector<Stage>& stages = run.stages;
+  Checkpoint checkpoint{state, run.steps, run.time};
+  stepper.restart(stages.back().plan.steps_per_linearization);
+  if (observe && !observe(run, state)) return run;
   const auto gained = [&](double t) {
     return std::isfinite(watch.largest_gain) &&
            watch.gained(system.kinetic_energy(state.v) + system.potential_energy(state.x), t);
@@ -70,36 +74,36 @@ SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan
       if (!stages.empty()) ++stages.back().done;
       continue;
     }
-    const double t = stage.time_of(stage.done + 1);
-    result.status = stepper.step(system, stage.plan.h, state);
-    if (result.status == StepStatus::done) {
+    const double t = time_of(stage, stage.done + 1);
+    run.status = stepper.step(system, stage.plan.h, state);
+    if (run.status == StepStatus::done) {
       ++stage.done;
-      const bool is_checkpoint = stage.at_checkpoint();
-      if (watch.diverged(system.kinetic_energy(state.v), t) || (is_checkpoint && gained(t))) {
-        result.status = StepStatus::diverged;
+      run.at_checkpoint = at_checkpoint(stage);
+      if (watch.diverged(system.kinetic_energy(state.v), t) || (run.at_checkpoint && gained(t))) {
+        run.status = StepStatus::diverged;
       } else {
-        ++result.steps;
-        result.time = t;
-        if (is_checkpoint) checkpoint.keep(state, result);
-        if (observe && !observe(result, state)) break;
+        ++run.steps;
+        run.time = t;
+        if (run.at_checkpoint) checkpoint.keep(state, run);
+        if (observe && !observe(run, state)) break;
         continue;
       }
     }
-    result.failed_at = t;
-    const bool diverged = result.status == StepStatus::diverged;
+    run.failed_at = t;
+    const bool diverged = run.status == StepStatus::diverged;
     if (diverged) {
       state = checkpoint.state;
-      result.steps = checkpoint.steps;
-      result.time = checkpoint.time;
+      run.steps = checkpoint.steps;
+      run.time = checkpoint.time;
     }
-    const std::optional<StepPlan> next = policy ? policy(result, state, stage.plan) : std::nullopt;
+    const std::optional<StepPlan> next = policy ? policy(run, state, stage.plan) : std::nullopt;
     if (!next) break;
-    ++result.failures;
+    ++run.failures;
     if (diverged) stages.clear();
-    stages.push_back({result.time, *next});
+    stages.push_back({run.time, *next});
     stepper.restart(next->steps_per_linearization);
   }
-  return result;
+  return run;
 }
 
 }  // namespace springstab

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <vector>
 
 #include "solvers/stepper.h"
 #include "solvers/system.h"
@@ -48,9 +49,25 @@ struct SimulationResult {
   long failures = 0;                     // steps that were discarded and taken again otherwise
 };
 
+/// A plan that is being carried out.
+struct Stage {
+  double start;  // [s]
+  StepPlan plan;
+  long done = 0;  // steps
+};
+
+/// Where a run stands: what it has done and what it does, the last stage for one step of the one before it.
+struct RunSoFar : SimulationResult {
+  std::vector<Stage> stages;
+  bool at_checkpoint = true;  // then this and the state are all that it takes to go on
+};
+
+/// Where a run that carries out the plan begins.
+RunSoFar start_of(const StepPlan& plan);
+
 /// Sees every good state, the first included; returning false stops the run. After a divergence that was
 /// undone, time is back at the last checkpoint.
-using Observer = std::function<bool(const SimulationResult& so_far, const State<Vector>& state)>;
+using Observer = std::function<bool(const RunSoFar& so_far, const State<Vector>& state)>;
 
 /// Asked after a failed step (so_far.status says why) with the state from which to go on. It may also change
 /// the system, as when new damping goes with the new step. The plan replaces the rest of the run after a
@@ -64,5 +81,11 @@ using StepPolicy = std::function<std::optional<StepPlan>(const SimulationResult&
 /// leaves the state as it was before the step. Neither non-finite nor implausible states reach the observer.
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {});
+
+/// The same from a checkpoint that an observer saw, with the state it saw there: goes on to the same bits as
+/// if the run had not been interrupted, if system and policy are as they were.
+SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
+                                   State<Vector>& state, const Observer& observe = {},
+                                   const StepPolicy& policy = {});
 
 }  // namespace springstab

@@ -144,7 +144,8 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
   if (!fs::exists(folder)) return files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const std::string name = fs::relative(entry.path(), folder);
-    if (entry.is_regular_file() && name.find(".part") == std::string::npos && !name.ends_with(".journal"))
+    if (entry.is_regular_file() && name.find(".part") == std::string::npos && !name.ends_with(".journal") &&
+        !name.ends_with(".checkpoint"))
       files[name] = comparable(entry.path());
   }
   return files;
@@ -185,7 +186,7 @@ void kill_and_resume(const fs::path& folder, Arguments arguments, const Undistur
     BOOST_TEST_CONTEXT(err) { BOOST_REQUIRE((status == 0 || status == -SIGKILL)); }
     if (!files_may_differ)  // whatever is there is whole
       for (const auto& [name, content] : files_in(folder / "out")) BOOST_TEST_CONTEXT(name) {
-          BOOST_TEST((content == undisturbed.files.at(name)));
+          BOOST_REQUIRE((content == undisturbed.files.at(name)));
         }
     if (status != 0) return std::pair(false, err);
     same(Json::parse(command.out()));
@@ -193,7 +194,8 @@ void kill_and_resume(const fs::path& folder, Arguments arguments, const Undistur
     for (const fs::directory_entry& entry : fs::directory_iterator(folder / "out")) {
       const std::string name = entry.path().filename();
       BOOST_TEST_CONTEXT(name) {
-        BOOST_TEST((name.find(".part") == std::string::npos && name.find(".journal") == std::string::npos));
+        BOOST_TEST((name.find(".part") == std::string::npos && name.find(".journal") == std::string::npos &&
+                    name.find(".checkpoint") == std::string::npos));
       }
     }
     return std::pair(true, err);
@@ -246,6 +248,88 @@ BOOST_AUTO_TEST_CASE(a_killed_complexity_study_ends_as_if_it_had_not_been) {
   BOOST_TEST(expected.at("studies").size() == 4);
   kill_and_resume(path() / "killed", complexity, undisturbed, 12, 2, false,
                   [&](const Json& report) { BOOST_TEST((untimed(report) == expected)); });
+}
+
+// A net that gets too stiff for its first step, so that divergences are undone and steps chosen anew;
+// implicit Euler, whose steps are halved; and matrices, whose rows go on in their file.
+BOOST_AUTO_TEST_CASE(a_killed_simulation_ends_as_if_it_had_not_been) {
+  write(path() / "stretched.json",
+        R"({"geometry": {"grid": [20, 20]}, "pins": "first-row", "damping": {"d0": 1, "alpha": "designed"},
+            "initial": {"stretch": [3, 1, 3]}})");
+  write(path() / "slack.json", R"({"geometry": {"grid": [20, 20]}, "pins": "first-row",
+            "damping": {"d0": 1, "alpha": 0.001}, "initial": {"stretch": [0.97, 1, 0.97]}})");
+  std::string matrix = "%%MatrixMarket matrix coordinate real symmetric\n200 200 399\n";
+  for (int i = 1; i <= 200; ++i)
+    matrix += std::to_string(i) + ' ' + std::to_string(i) + " 2e4\n" +
+              (i < 200 ? std::to_string(i + 1) + ' ' + std::to_string(i) + " -1e4\n" : "");
+  write(path() / "chain.mtx", matrix);
+  const std::string stretched = path() / "stretched.json", slack = path() / "slack.json",
+                    chain = path() / "chain.mtx";
+  const std::vector<Arguments> runs{
+      {"simulate", stretched, "--method", "linearized-explicit-euler", "--duration", "10"},
+      {"simulate", slack, "--method", "implicit-euler", "--step", "0.005", "--duration", "20"},
+      {"simulate", "--stiffness", chain, "--method", "rk4", "--duration", "2500", "--frames", "500"}};
+  long halved = 0;
+  long undone = 0;
+  for (Arguments arguments : runs) {
+    arguments.insert(arguments.end(), {"--json", "--output", "out"});
+    const Undisturbed undisturbed(path() / "left alone", arguments);
+    const Json expected = untimed(undisturbed.report);
+    BOOST_TEST(expected.at("status") == "done");
+    BOOST_TEST((undisturbed.files.size() == 101 || undisturbed.files.contains("trajectory.csv")));
+    undone += expected.at("counts").at("rollbacks").get<long>();
+    halved += expected.at("counts").at("halved_steps").get<long>();
+    BOOST_TEST_MESSAGE(expected.at("method")
+                       << ": " << undisturbed.seconds << " s, counts " << expected.at("counts"));
+    kill_and_resume(path() / "killed", arguments, undisturbed, 6, 4, false,
+                    [&](const Json& report) { BOOST_TEST((untimed(report) == expected)); });
+    for (const char* folder : {"left alone", "killed"}) fs::remove_all(path() / folder);
+  }
+  BOOST_TEST(undone > 0);
+  BOOST_TEST(halved > 0);
+}
+
+BOOST_AUTO_TEST_CASE(an_interrupted_simulation_goes_on_from_its_own_whole_checkpoint_only) {
+  const Arguments run{"simulate",         "--grid",     "20x20", "--pin",  "first-row", "--method",
+                      "symplectic-euler", "--duration", "20",    "--json", "--output",  "out"};
+  const fs::path checkpoint = path() / "out" / "simulate.checkpoint";
+  {
+    const Command command(path(), run);
+    for (int i = 0; i < 5000 && !fs::exists(checkpoint); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    command.send(SIGINT);
+    BOOST_TEST(command.wait() == 130);
+    const Json report = Json::parse(command.out());
+    BOOST_TEST(report.at("status") == "interrupted");
+    BOOST_TEST(report.at("steps").get<long>() > 0);
+    const std::string err = command.err();
+    BOOST_TEST(err.find(" frames and the run up to t = ") != std::string::npos);
+    BOOST_TEST(err.find("--resume") != std::string::npos);
+  }
+  const std::string whole = content_of(checkpoint);
+  const auto refused = [&](const std::string& option, const std::string& value, const std::string& reason) {
+    Arguments again = run;
+    again.insert(again.end(), {"--resume", option, value});
+    const Command command(path(), again);
+    BOOST_TEST_CONTEXT(reason) {
+      BOOST_TEST(command.wait() == 2);
+      BOOST_TEST(command.out().empty());
+      BOOST_TEST(command.err().find("simulate.checkpoint: ") != std::string::npos);
+      BOOST_TEST(command.err().find(reason) != std::string::npos);
+    }
+  };
+  refused("--frames", "99", "expected the same options/frames");
+  refused("--spacing", "0.03", "expected the same inputs/spacing");
+  for (const std::size_t place : {std::size_t{20}, whole.size() / 2, whole.size() - 3}) {
+    std::string damaged = whole;
+    damaged[place] = static_cast<char>(damaged[place] ^ 1);
+    write(checkpoint, damaged);
+    refused("--frames", "100", "is damaged");
+  }
+  for (const std::size_t length : {std::size_t{1}, whole.size() / 2, whole.size() - 1}) {
+    write(checkpoint, whole.substr(0, length));
+    refused("--frames", "100", "is damaged");
+  }
 }
 
 // How far a contestant gets is for the clock to say; as far as two runs both get, they agree.

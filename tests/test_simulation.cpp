@@ -337,6 +337,51 @@ BOOST_AUTO_TEST_CASE(a_divergence_is_undone_back_to_the_checkpoint) {
   }
 }
 
+// What an observer sees at a checkpoint is all that there is: from each of them another scene goes on to the
+// same bits, also across divergences that are undone and steps that are halved.
+BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_checkpoint_as_if_it_had_not_stopped) {
+  constexpr double duration = 0.4;
+  const StepPolicy shorter = [](const SimulationResult& so_far, const State<Vector>&,
+                                const StepPlan& failed) {
+    const bool diverged = so_far.status == StepStatus::diverged;
+    const double h = failed.h / 2, rest = diverged ? duration - so_far.time : failed.h;
+    const long each = failed.steps_per_linearization;
+    return std::optional(StepPlan{h, std::lround(rest / h / static_cast<double>(each)) * each, each});
+  };
+  long failures = 0, resumed = 0;
+  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+      const double h = method.implicit ? 0.02 : 0.008;
+      const StepPlan plan{h, std::lround(duration / h), method.linearized ? 5 : 1};
+      Scene scene = cloth(5, {1, 1e-4});
+      State<Vector> start = scene.rest_state();
+      for (double& x : start.x) x *= 0.9;
+      const EnergyWatch watch = {
+          .initial_energy = energy(scene, start), .gravity = 9.81, .mass = 1, .slack = 10};
+      std::vector<std::pair<RunSoFar, State<Vector>>> checkpoints;
+      State<Vector> end = start;
+      const SimulationResult whole = simulate(
+          scene, *make_stepper(method.name), plan, watch, end,
+          [&](const RunSoFar& so_far, const State<Vector>& state) {
+            if (so_far.at_checkpoint) checkpoints.emplace_back(so_far, state);
+            return true;
+          },
+          shorter);
+      BOOST_TEST((whole.status == StepStatus::done));
+      failures += whole.failures;
+      for (const auto& [run, state] : checkpoints) {
+        Scene another = cloth(5, {1, 1e-4});
+        State<Vector> s = state;
+        const SimulationResult rest =
+            resume_simulation(another, *make_stepper(method.name), run, watch, s, {}, shorter);
+        ++resumed;
+        BOOST_TEST((s.x == end.x && s.v == end.v));
+        BOOST_TEST((rest.steps == whole.steps && rest.time == whole.time && rest.failures == whole.failures));
+      }
+    }
+  BOOST_TEST(failures > 5);
+  BOOST_TEST(resumed > 100);
+}
+
 // A gain in total energy is seen while the speed is still plausible.
 BOOST_AUTO_TEST_CASE(a_gain_of_energy_ends_a_run_at_a_checkpoint) {
   BlockLinearSystem system = oscillator(4);

@@ -74,12 +74,13 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
 }
 
 OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
-    : path_(path), target_(path), aside_(path + std::string(part_suffix)), kept_(true) {
+    : path_(path), target_(path), aside_(path + ".kept"), kept_(bytes > 0) {
   if (bytes > 0) {
     std::error_code error;
-    if (const std::uintmax_t there = std::filesystem::file_size(aside_, error); error || there < bytes)
-      throw InputError(aside_, 0, "has less than the run had written; without --resume the run starts anew");
-    std::filesystem::resize_file(aside_, bytes, error);
+    const std::uintmax_t there = std::filesystem::file_size(aside_, error);
+    if (!error && there >= bytes) std::filesystem::resize_file(aside_, bytes, error);
+    if (error || there < bytes)
+      throw InputError(aside_, 0, "is not what the run had written; without --resume the run starts anew");
   }
   stream_.open(aside_, bytes > 0 ? std::ios::app : std::ios::trunc);
   if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
@@ -87,9 +88,12 @@ OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
   stream_.precision(17);
 }
 
-std::uintmax_t OutputFile::flush() {
+std::uintmax_t OutputFile::keep() {
+  errno = 0;
   stream_.flush();
-  if (!stream_) throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno));
+  if (!stream_)
+    throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno ? errno : EIO));
+  kept_ = true;
   return std::filesystem::file_size(aside_);
 }
 

@@ -29,16 +29,17 @@ class OutputFile {
  public:
   /// Throws InputError if the file cannot be created.
   explicit OutputFile(const std::string& path);
-  /// Goes on after the first `bytes` of what is beside its place, in path.part, and leaves that there until
-  /// commit(). Throws InputError also where less is there.
+  /// Goes on after the first `bytes` of what an interrupted run left in path.kept. Throws InputError also
+  /// where less is there.
   OutputFile(const std::string& path, std::uintmax_t bytes);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   std::ostream& stream() { return stream_; }
-  /// Hands everything to the system; returns how many bytes there are.
-  std::uintmax_t flush();
+  /// Hands everything to the system, to be left there for another run if this one does not commit(). Returns
+  /// how many bytes there are, throws InputError if they cannot be written.
+  std::uintmax_t keep();
   /// Throws InputError if anything could not be written.
   void commit();
 

@@ -101,7 +101,7 @@ class Recorder {
     return {{"frames", frames},
             {"due", due_},
             {"most", most_},
-            {"csv_bytes", csv_ ? Json(csv_->flush()) : Json()}};
+            {"csv_bytes", csv_ ? Json(csv_->keep()) : Json()}};
   }
 
   void finish() {
@@ -130,9 +130,9 @@ class Recorder {
 std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,
                   const SimulateOptions& options) {
   if (options.output.empty()) return "nothing was saved (with --output it would have been)";
+  if (checkpoint.saved_until() == 0) return "nothing was saved yet to go on from";
   return text(
-      "%d frames and the run up to t = %.6g s are saved in %s; the same command goes on there with "
-      "--resume",
+      "%d frames and the run up to t = %.6g s are saved in %s; the same command goes on there with --resume",
       recorder.written(), checkpoint.saved_until(), options.output.c_str());
 }
 
@@ -219,7 +219,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   const double cpu = cpu_seconds() - cpu_before;
   const Counts counts = counted.counts();
   const bool stopped = interrupt.requested();
-  if (!stopped) recorder.finish();
+  if (!stopped) recorder.kept();  // a full disk shows before the report
 
   const bool diverged = result.status == StepStatus::diverged;
   const auto energy = [&](const State<Vector>& s) {
@@ -290,6 +290,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     return interrupted;
   }
   if (std::cout.flush()) checkpoint.finish();
+  recorder.finish();
   return diverged ? run_diverged : result.status == StepStatus::done ? done : no_answer;
 }
 

@@ -145,7 +145,7 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const std::string name = fs::relative(entry.path(), folder);
     if (entry.is_regular_file() && name.find(".part") == std::string::npos && !name.ends_with(".journal") &&
-        !name.ends_with(".checkpoint"))
+        !name.ends_with(".checkpoint") && !name.ends_with(".kept"))
       files[name] = comparable(entry.path());
   }
   return files;
@@ -195,7 +195,8 @@ void kill_and_resume(const fs::path& folder, Arguments arguments, const Undistur
       const std::string name = entry.path().filename();
       BOOST_TEST_CONTEXT(name) {
         BOOST_TEST((name.find(".part") == std::string::npos && name.find(".journal") == std::string::npos &&
-                    name.find(".checkpoint") == std::string::npos));
+                    name.find(".checkpoint") == std::string::npos &&
+                    name.find(".kept") == std::string::npos));
       }
     }
     return std::pair(true, err);

@@ -6,6 +6,7 @@
 #include <complex>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 namespace springstab {
@@ -14,6 +15,9 @@ namespace springstab {
 struct LinearOperator {
   Eigen::Index size = 0;
   std::function<void(const Eigen::VectorXd& in, Eigen::VectorXd& out)> apply;
+  // Of a symmetric one: bounds on its eigenvalues, where they are known.
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
 };
 
 struct ArpackOptions {

@@ -28,12 +28,12 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
                                   const Stiffening& stiffening) {
   const auto& [a, b, c] = condition;
   // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
-  constexpr double loose = 1e-4, sharp = 1e-7, stiffened = 1e-5;
+  constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-6, stiffened = 1e-4;
   const double last = stiffening.factor == 1 ? sharp : stiffened;
   double h = infinity;
   Eigen::VectorXd near;
   for (const auto& [x, y] : {std::pair{0.0, 1.0}, {1.0, 0.0}}) {
-    const std::optional<ExtremePoint> p = range.farthest(x, y, loose);
+    const std::optional<ExtremePoint> p = range.farthest(x, y, first);
     if (!p) return std::nullopt;
     if (const double next = root(a, b, c, stiffening(*p)); next < h) h = next, near = p->vector;
   }

@@ -4,16 +4,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/chebyshev_filter.h"
 #include "analysis/spectrum.h"
 
 namespace springstab {
+namespace {
+
+// Of a multiple.
+double lowest(double factor, const LinearOperator& a) {
+  return factor == 0 ? 0 : factor > 0 ? factor * a.lowest : factor * a.highest;
+}
+
+}  // namespace
 
 NumericalRange::NumericalRange(const StructuralMatrices& s, ArpackOptions options)
     : size_(s.size()), options_(std::move(options)), stiffness_(mass_scaled(s.stiffness, s.mass)) {
   if (s.has_damping()) {
     damping_ = mass_scaled(s.damping, s.mass);
   } else {
-    damping_ = {size_, [](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.setZero(in.size()); }};
+    damping_ = {size_, [](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.setZero(in.size()); }, 0, 0};
   }
   if (size_ > dense_limit) return;
   dense_damping_ = symmetric_part(as_dense(damping_));
@@ -36,19 +45,20 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
     return point(solver.eigenvectors().rightCols<1>());
   }
   Eigen::VectorXd part;
-  const LinearOperator sum{size_, [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+  const LinearOperator sum{size_,
+                           [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
                              stiffness_.apply(in, out);
                              damping_.apply(in, part);
                              out = b * out + a * part;
-                           }};
+                           },
+                           lowest(a, damping_) + lowest(b, stiffness_)};
   ArpackOptions options = options_;
   options.tolerance = std::max(options.tolerance, tolerance);
-  if (tolerance > 1e-6) options.basis_size = 24;  // fewer vectors to orthogonalize against
   if (near.size() > 0) {  // with a little of every other vector, lest the largest is orthogonal to it
     const Eigen::VectorXd random = start_vector(size_, {}, options_.seed);
     options.start = near + 1e-2 / random.norm() * random;
   }
-  const SymmetricEigenpairs pairs = largest_eigenpairs(sum, 1, options);
+  const SymmetricEigenpairs pairs = largest_eigenpair(sum, options);
   if (!pairs.converged) return std::nullopt;
   return point(pairs.vectors.col(0));
 }

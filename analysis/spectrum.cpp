@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "analysis/chebyshev_filter.h"
 #include "analysis/definiteness.h"
 
 namespace springstab {
@@ -30,6 +31,16 @@ double largest_row_sum(const SparseMatrix& a) {
   return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
 }
 
+// A symmetric matrix as an operator, its eigenvalues bounded by Gershgorin's discs.
+LinearOperator symmetric_operator(SparseMatrix a) {
+  const Eigen::VectorXd centres = a.diagonal();
+  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
+  const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
+  return {matrix->rows(),
+          [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; },
+          (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+}
+
 StiffestMode dense_spectrum(const LinearOperator& s) {
   const Eigen::MatrixXd matrix = symmetric_part(as_dense(s));
   if (!matrix.allFinite())
@@ -46,24 +57,39 @@ StiffestMode dense_spectrum(const LinearOperator& s) {
   return mode;
 }
 
-// Of a matrix that is not symmetric: the eigenvalue of largest modulus, and the least real part.
-StiffestMode nonsymmetric_spectrum(const LinearOperator& s) {
+void set_mode(const LinearOperator& s, std::complex<double> value, const Eigen::VectorXcd& v,
+              StiffestMode& mode) {
+  Eigen::VectorXd real, imaginary;
+  s.apply(v.real(), real);
+  s.apply(v.imag(), imaginary);
+  mode.value = std::abs(value);
+  mode.residual = std::hypot((real - (value * v).real()).norm(), (imaginary - (value * v).imag()).norm());
+}
+
+// Of a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the least
+// real part.
+StiffestMode nonsymmetric_spectrum(const LinearOperator& s, const ArpackOptions& options) {
   StiffestMode mode;
-  if (s.size > nonsymmetric_limit) return mode;
+  if (s.size > nonsymmetric_limit) {
+    const Eigenvalues found = dominant_eigenvalues(s, 1, options);
+    mode.converged = found.converged;
+    mode.products = found.products;
+    if (mode.converged) set_mode(s, found.values[0], found.vectors.col(0), mode);
+    return mode;
+  }
   const Eigen::MatrixXd matrix = as_dense(s);
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
   mode.converged = solver.info() == Eigen::Success;
   if (!mode.converged) return mode;
   Eigen::Index largest = 0;
-  mode.value = solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
+  solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
+  set_mode(s, solver.eigenvalues()[largest], solver.eigenvectors().col(largest).normalized(), mode);
   mode.smallest = solver.eigenvalues().real().minCoeff();
-  const Eigen::VectorXcd v = solver.eigenvectors().col(largest).normalized();
-  mode.residual = (matrix * v - solver.eigenvalues()[largest] * v).norm();
   return mode;
 }
 
 StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& options) {
-  const SymmetricEigenpairs pairs = largest_eigenpairs(s, 1, options);
+  const SymmetricEigenpairs pairs = largest_eigenpair(s, options);
   StiffestMode mode;
   mode.converged = pairs.converged;
   mode.products = pairs.products;
@@ -77,11 +103,7 @@ StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& optio
 
 // With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
 LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
-  if (is_diagonal(mass)) {
-    const auto matrix = std::make_shared<SparseMatrix>(scaled(a, inverse_root(mass)));
-    return {a.rows(),
-            [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; }};
-  }
+  if (is_diagonal(mass)) return symmetric_operator(scaled(a, inverse_root(mass)));
   const auto factor = std::make_shared<Cholesky>(mass);
   return {a.rows(), [factor, &a](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
             out = factor->permutationPinv() * factor->matrixU().solve(in);
@@ -110,7 +132,7 @@ bool is_below(const StructuralMatrices& s, double sigma) {
 
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
   const LinearOperator op = scaled_stiffness(s);
-  StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op)
+  StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op, options)
                       : s.size() <= dense_limit ? dense_spectrum(op)
                                                 : arpack_spectrum(op, options);
   mode.upper_bound = std::numeric_limits<double>::infinity();

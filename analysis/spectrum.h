@@ -46,7 +46,7 @@ Eigen::MatrixXd as_dense(const LinearOperator& a);
 Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a);
 
 /// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Where K is not symmetric it is the largest |λ|,
-/// found up to 400 unknowns, bounded by Gershgorin alone, and `smallest` the least real part. Above 150 000
+/// bounded by Gershgorin alone, and `smallest`, found up to 400 unknowns, the least real part. Above 150 000
 /// unknowns nothing is factorized: the bound is Gershgorin's and definiteness is not tested.
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "analysis/arpack.h"
+#include "analysis/chebyshev_filter.h"
 #include "analysis/method_limits.h"
 #include "analysis/spectrum.h"
 #include "analysis/transition_operator.h"
@@ -327,6 +328,76 @@ BOOST_AUTO_TEST_CASE(an_eigenvalue_scales_with_the_unit_of_time) {
       check_encloses(stiffest_mode(prepare(a)), scale * fixed_chain_k0(n));
       check_encloses(stiffest_mode(prepare(scale * fixed_chain(30))), scale * fixed_chain_k0(30));
     }
+}
+
+BOOST_AUTO_TEST_CASE(a_filtered_solve_finds_the_same_eigenvalue_to_the_same_residual) {
+  for (const auto& known : known_spectra()) {
+    if (known.k.rows() <= 3 * dense_limit / 4) continue;
+    const StructuralMatrices s = prepare(known.k, known.m);
+    LinearOperator bounded = scaled_stiffness(s);
+    if (!std::isfinite(bounded.lowest)) bounded.lowest = 0;  // consistent masses
+    const double k0 = largest_eigenpairs(bounded, 1).values.at(0);
+    for (const double wanted : {1e-3, 1e-6, 1e-9}) BOOST_TEST_CONTEXT(known.name << " to " << wanted) {
+        const SymmetricEigenpairs found = largest_eigenpair(bounded, {.tolerance = wanted});
+        BOOST_REQUIRE(found.converged);
+        BOOST_TEST(found.residuals.at(0) <= 1.2 * wanted * k0);
+        BOOST_TEST(found.values.at(0) <= (1 + 1e-13) * k0);
+        BOOST_TEST(found.values[0] >= (1 - wanted) * k0);
+        Vector image;
+        bounded.apply(found.vectors.col(0), image);
+        BOOST_TEST((image - found.values[0] * found.vectors.col(0)).stableNorm() == found.residuals[0]);
+        BOOST_TEST(found.vectors.col(0).norm() == 1, tolerance(1e-12));
+      }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(a_filter_passes_over_what_is_far_below_zero) {
+  for (const double lowest : {-0.5, -1.0, -30.0}) BOOST_TEST_CONTEXT("from " << lowest) {
+      Vector d(300);
+      for (int i = 0; i < 300; ++i) d[i] = lowest + (1 - lowest) * ((37 * i) % 300) / 299.0;
+      const SparseMatrix a = diagonal(d);
+      const LinearOperator s = scaled_stiffness(prepare(a));
+      BOOST_TEST(s.lowest == lowest);
+      BOOST_TEST(s.highest == 1);
+      BOOST_TEST(largest_eigenpair(s).values.at(0) == 1, tolerance(1e-12));
+    }
+}
+
+BOOST_AUTO_TEST_CASE(no_eigenvalue_lies_beyond_the_bounds_of_an_operator) {
+  Random random(77);
+  int indefinite = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const int n = 2 + random.index(20);
+    Dense k = random.matrix(n, n).cwiseProduct(random.matrix(n, n).cwiseAbs2());
+    k = (k + k.transpose()).eval();
+    Vector m(n);
+    for (double& entry : m) entry = std::exp(random(-5, 5));
+    const StructuralMatrices s = prepare(sparse(k), diagonal(m));
+    const LinearOperator op = scaled_stiffness(s);
+    const Vector eigenvalues = Eigen::SelfAdjointEigenSolver<Dense>(as_dense(op)).eigenvalues();
+    const double rounding = 10 * eps * op.highest;
+    BOOST_TEST(op.lowest <= eigenvalues[0] + rounding);
+    BOOST_TEST(op.highest >= eigenvalues[n - 1] - rounding);
+    indefinite += eigenvalues[0] < 0;
+  }
+  BOOST_TEST(indefinite > 50);
+}
+
+// A chain after a change of variables that leaves its eigenvalues but not its symmetry.
+BOOST_AUTO_TEST_CASE(many_unknowns_that_are_not_symmetric_have_a_stiffest_mode) {
+  const int n = 600;
+  Vector grade(n);
+  for (int i = 0; i < n; ++i) grade[i] = std::pow(1.001, i);
+  const SparseMatrix chain = fixed_chain(n);
+  const StructuralMatrices s =
+      prepare_nonsymmetric(SparseMatrix(diagonal(grade) * chain * diagonal(grade.cwiseInverse())));
+  BOOST_REQUIRE(!s.symmetric);
+  const StiffestMode mode = stiffest_mode(s);
+  BOOST_REQUIRE(mode.converged);
+  BOOST_TEST(mode.value == fixed_chain_k0(n), tolerance(1e-9));
+  BOOST_TEST(mode.residual < 1e-6 * mode.value);
+  BOOST_TEST(mode.upper_bound >= fixed_chain_k0(n));
+  BOOST_TEST(!mode.smallest);
 }
 
 BOOST_AUTO_TEST_CASE(the_largest_of_negative_eigenvalues_is_the_one_nearest_to_zero) {

@@ -62,7 +62,7 @@ int run_figures(const CommonOptions& common, const FiguresOptions& options) {
     list.push_back(std::move(row));
     exit_on_interrupt(text("%zu figures are in %s", list.size(), options.output.c_str()));
   }
-  if (common.json) std::cout << Json{{"figures", list}}.dump(2) << '\n';
+  if (common.json) print_json(Json{{"figures", list}});
   return all_hold ? done : no_answer;
 }
 

@@ -237,18 +237,16 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
       list.back()["h_every_pose"] = number(row.h_every_pose);
       list.back()["transient_growth"] = number(row.growth);
     }
-    std::cout << Json{{"degrees_of_freedom", structure.size()},
-                      {"condensed", structure.condensed},
-                      {"k0", k0_json(k0)},
-                      {"stiffness_indefinite", k0.indefinite},
-                      {"symmetric", structure.symmetric},
-                      {"growth_rate", number(growth_rate)},
-                      {"damping", damping_json(damping)},
-                      {"safety", options.safety},
-                      {"mesh", mesh_json(subject)},
-                      {"methods", list}}
-                     .dump(2)
-              << '\n';
+    print_json(Json{{"degrees_of_freedom", structure.size()},
+                    {"condensed", structure.condensed},
+                    {"k0", k0_json(k0)},
+                    {"stiffness_indefinite", k0.indefinite},
+                    {"symmetric", structure.symmetric},
+                    {"growth_rate", number(growth_rate)},
+                    {"damping", damping_json(damping)},
+                    {"safety", options.safety},
+                    {"mesh", mesh_json(subject)},
+                    {"methods", list}});
   } else if (k0.converged) {
     print(structure, k0, damping, options.safety);
     for (const Row& row : rows) print(row.method, row.limits);

@@ -49,7 +49,7 @@ int run_methods(const CommonOptions& common) {
                         c.real_interval, c.imaginary_interval);
   }
   if (common.json) {
-    std::cout << Json{{"methods", list}}.dump(2) << '\n';
+    print_json(Json{{"methods", list}});
   } else {
     std::cout << "\nY = h²k and X = hd of one mode. Explicit Euler with damping α = h takes the same steps "
                  "as symplectic\n"

@@ -49,6 +49,10 @@ bool all_finite(const Json& json) {
   return !json.is_number_float() || std::isfinite(json.get<double>());
 }
 
+void print_json(const Json& document) {
+  std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
 std::string text(const char* format, ...) {
   va_list arguments, again;
   va_start(arguments, format);

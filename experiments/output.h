@@ -20,6 +20,9 @@ Json number(const std::optional<double>& value);
 /// Whether every number in it is finite.
 bool all_finite(const Json& json);
 
+/// To stdout. Bytes that are not UTF-8, as a file's name may have, become U+FFFD.
+void print_json(const Json& document);
+
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...);
 

@@ -179,7 +179,7 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
                            {"outside_band", cells.outside_band}};
   }
   if (common.json) {
-    std::cout << report.dump(2) << '\n';
+    print_json(report);
     return done;
   }
   std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", options.method.c_str(), grid.window.x_min,

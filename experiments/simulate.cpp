@@ -168,8 +168,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) {
     if (common.json) {
-      std::cout << Json{{"method", options.method}, {"step", nullptr}, {"status", chooser.reason()}}.dump(2)
-                << '\n';
+      print_json(Json{{"method", options.method}, {"step", nullptr}, {"status", chooser.reason()}});
     } else {
       std::cout << chooser.reason() << '\n';
     }
@@ -253,7 +252,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   }
   if (options.explain) report["explanation"] = explanation;
   if (common.json) {
-    std::cout << report.dump(2) << '\n';
+    print_json(report);
   } else {
     std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps,
                       h, cpu);

@@ -248,6 +248,11 @@ BOOST_AUTO_TEST_CASE(names_may_be_in_any_language) {
   BOOST_TEST(
       (*this)("simulate '" + mesh + "' --method rk4 --step 1e-3 --duration 0.01 --output Größe").status == 0);
   BOOST_TEST(fs::exists(folder() / "Größe" / "frame_00000.obj"));
+
+  const Outcome stress = (*this)("stress --filter 'one mass' --output 'no\xff' --json");  // not UTF-8
+  BOOST_TEST(stress.status == 0);
+  BOOST_TEST(stress.out.find("no\uFFFD") != std::string::npos);
+  BOOST_TEST(fs::exists(folder() / "no\xff"));
 }
 
 // In Germany 2.5 is written 2,5: everything that is read and written stays as it is.

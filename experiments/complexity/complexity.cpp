@@ -153,11 +153,12 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
   const StudyResult &n = studies[0], &k0 = studies[1], &h = studies[2], &cg = studies[3];
   const std::vector<Table> tables{exponents(n, k0), ratios(n), iterations(h), tolerances(cg)};
   if (common.json) {
-    std::cout << Json{{"tables", tables},           {"studies", list},
-                      {"all_finished", finished},   {"rollbacks", rollbacks},
-                      {"provenance", provenance()}, {"files", files}}
-                     .dump(2)
-              << '\n';
+    print_json(Json{{"tables", tables},
+                    {"studies", list},
+                    {"all_finished", finished},
+                    {"rollbacks", rollbacks},
+                    {"provenance", provenance()},
+                    {"files", files}});
   } else {
     for (const Table& table : tables) std::cout << markdown(table) << '\n';
     const std::vector<HeatResult>& sheets = n.series.front().points;

@@ -240,7 +240,7 @@ int run_divergence(const CommonOptions& common, const DivergenceOptions& options
   Journal journal(options.output, identity_of("divergence", settings, inputs), options.resume, common.quiet);
   const Json report = report_of(common, options, std::move(scenes), journal);
   if (common.json)
-    std::cout << report.dump(2) << '\n';
+    print_json(report);
   else
     print(report);
   if (std::cout.flush()) journal.finish();

@@ -111,7 +111,7 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
       files.push_back(file);
 
   if (common.json) {
-    std::cout << json_of(result, files).dump(2) << '\n';
+    print_json(json_of(result, files));
   } else {
     print(result, problem);
   }

@@ -164,14 +164,12 @@ int run_stress_command(const CommonOptions& common, const StressOptions& options
   if (common.json) {
     Json list = Json::array();
     for (const StressResult& r : results) list.push_back(json_of(r));
-    std::cout << Json{{"cases", results.size() / all_methods().size()},
-                      {"runs", results.size()},
-                      {"unexpected", unexpected(results)},
-                      {"outcomes", counts_of(results)},
-                      {"results", list},
-                      {"files", files}}
-                     .dump(2)
-              << '\n';
+    print_json(Json{{"cases", results.size() / all_methods().size()},
+                    {"runs", results.size()},
+                    {"unexpected", unexpected(results)},
+                    {"outcomes", counts_of(results)},
+                    {"results", list},
+                    {"files", files}});
   } else {
     print(results);
     std::cout << '\n' << summary(results) << '\n';

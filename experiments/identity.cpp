@@ -16,6 +16,10 @@ Json identity_of(const std::string& command, const Json& options, const Json& in
   return {{"program", provenance()}, {"command", command}, {"options", options}, {"inputs", inputs}};
 }
 
+std::string as_utf8(const std::string& text) {
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 std::string bytes_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::string all{std::istreambuf_iterator<char>(in), {}};
@@ -24,7 +28,7 @@ std::string bytes_of(const std::string& path) {
 }
 
 Json contents_of(const std::string& file) {
-  Json contents{{"name", std::filesystem::path(file).filename().string()}};
+  Json contents{{"name", as_utf8(std::filesystem::path(file).filename().string())}};
   if (!std::filesystem::is_regular_file(file)) return contents;
   contents["hash"] = hash_of(bytes_of(file));
   if (!file.ends_with(".json")) return contents;

@@ -13,6 +13,9 @@ namespace springstab {
 /// Of a command with options and inputs (contents_of). Also says which program and machine it is.
 Json identity_of(const std::string& command, const Json& options, const Json& inputs);
 
+/// U+FFFD in place of what is not UTF-8, as a file's name may be; JSON takes nothing else.
+std::string as_utf8(const std::string& text);
+
 /// All bytes of a file; throws InputError if it cannot be read.
 std::string bytes_of(const std::string& path);
 

@@ -90,7 +90,8 @@ void Journal::append(const Json& json) {
   if (fsync(file_.descriptor) != 0) throw failure(path_);
 }
 
-Json Journal::piece(const std::string& what, const std::function<Json()>& compute) {
+Json Journal::piece(const std::string& description, const std::function<Json()>& compute) {
+  const std::string what = as_utf8(description);
   if (has_next(1)) {
     const Json& piece = kept_[next_++];
     if (piece.at("piece") == what) return piece.at("result");

@@ -25,9 +25,9 @@ class Journal {
   /// for `resume` without a folder.
   Journal(const std::string& folder, const Json& identity, bool resume, bool quiet);
 
-  /// The next piece; `what` describes it. Throws InputError if the journal has another one there, or if it
+  /// The next piece. Throws InputError if the journal has one there that is described otherwise, or if it
   /// cannot be written, std::logic_error for a number that is not finite.
-  Json piece(const std::string& what, const std::function<Json()>& compute);
+  Json piece(const std::string& description, const std::function<Json()>& compute);
 
   /// Whether at least so many of the next pieces are there already.
   bool has_next(std::size_t pieces) const { return kept_.size() - next_ >= pieces; }

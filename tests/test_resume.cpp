@@ -482,6 +482,11 @@ BOOST_AUTO_TEST_CASE(a_journal_of_another_run_or_a_damaged_one_is_refused) {
     write(file, damaged);
     refused(identity, "is damaged");
   }
+  for (const bool resumed : {false, true}) {  // a scene's name in another encoding
+    Journal journal(path(), identity, resumed, true);
+    BOOST_TEST(journal.has_next(1) == resumed);
+    BOOST_TEST((journal.piece("caf\xe9, rk4", [] { return Json(1); }) == 1));
+  }
   write(file, whole);
   Journal journal(path(), identity, true, true);
   BOOST_CHECK_THROW(journal.piece("number 2", [] { return Json(); }), InputError);  // the first one is next

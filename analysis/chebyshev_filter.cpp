@@ -7,7 +7,7 @@ namespace {
 
 constexpr int degree = 16;
 constexpr double below = 0.01;  // the top of the spectrum, as part of it, where the polynomial exceeds 1
-constexpr double rough = 1e-2;  // its tolerance
+constexpr double rough = 1e-2;  // tolerance of that value
 constexpr Eigen::Index rough_basis = 10, basis = 20;
 
 // T_degree of A mapped so that [lowest, cut] becomes [-1, 1].
@@ -40,9 +40,9 @@ SymmetricEigenpairs largest_eigenpair(const LinearOperator& a, const ArpackOptio
   ArpackOptions first = options;
   first.tolerance = std::max(options.tolerance, rough);
   first.basis_size = rough_basis;
-  SymmetricEigenpairs found = largest_eigenpairs(a, 1, first);
-  if (first.tolerance == options.tolerance || !found.converged) return found;
-  const double largest = found.values[0];
+  const SymmetricEigenpairs found = largest_eigenpairs(a, 1, first);
+  if (found.converged && first.tolerance == options.tolerance) return found;
+  const double largest = found.converged ? found.values[0] : 0;
   if (!(largest > 0 && largest >= -a.lowest)) return largest_eigenpairs(a, 1, options);
 
   ChebyshevFilter filter(a, largest - below * (largest - a.lowest));

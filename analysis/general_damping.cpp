@@ -28,7 +28,7 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
                                   const Stiffening& stiffening) {
   const auto& [a, b, c] = condition;
   // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
-  constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-6, stiffened = 1e-4;
+  constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-7, stiffened = 1e-5;
   const double last = stiffening.factor == 1 ? sharp : stiffened;
   double h = infinity;
   Eigen::VectorXd near;

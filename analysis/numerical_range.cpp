@@ -44,14 +44,18 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
     if (solver.info() != Eigen::Success) return std::nullopt;
     return point(solver.eigenvectors().rightCols<1>());
   }
+  // Shifted to a positive semidefinite one, where a bound is known: the largest eigenvalue may be 0, and the
+  // null space is hidden from ARPACK, which multiplies even its start vector by the operator.
+  const double bound = lowest(a, damping_) + lowest(b, stiffness_);
+  const double shift = std::isfinite(bound) ? -bound : 0;
   Eigen::VectorXd part;
   const LinearOperator sum{size_,
                            [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
                              stiffness_.apply(in, out);
                              damping_.apply(in, part);
-                             out = b * out + a * part;
+                             out = b * out + a * part + shift * in;
                            },
-                           lowest(a, damping_) + lowest(b, stiffness_)};
+                           bound + shift};
   ArpackOptions options = options_;
   options.tolerance = std::max(options.tolerance, tolerance);
   if (near.size() > 0) {  // with a little of every other vector, lest the largest is orthogonal to it

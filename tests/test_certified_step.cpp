@@ -149,6 +149,32 @@ BOOST_AUTO_TEST_CASE(large_nets_have_the_limit_of_small_ones) {
   BOOST_TEST(h == symplectic_truth(s), tolerance(1e-9));
 }
 
+// Also where a coefficient is negative, and what bounds D' or K' from above bounds the sum from below.
+BOOST_AUTO_TEST_CASE(the_farthest_point_of_large_nets_is_that_of_dense_matrices) {
+  const StructuralMatrices s = matrices(make_net(Grid{8, 9, 0.1}, {.damping = {0.05, 0.02, 0.01}}));
+  const Eigen::MatrixXd damping = mass_scaled_dense(s.damping, s),
+                        stiffness = mass_scaled_dense(s.stiffness, s);
+  const NumericalRange range(s);
+  const double d = damping.norm(), k = stiffness.norm();
+  for (const auto& [a, b] : {std::pair{0.0, 1.0},
+                             {1.0, 0.0},
+                             {1.0, 1.0},
+                             {1.0, -1.0},
+                             {0.3, -1.0},
+                             {-1.0, 1.0},
+                             {-0.3, 1.0},
+                             {-1.0, 0.3},
+                             {-1.0, 0.0}})
+    BOOST_TEST_CONTEXT(a << " D' + " << b << " K'") {
+      const Eigen::MatrixXd sum = a / d * damping + b / k * stiffness;
+      const double truth = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(sum, Eigen::EigenvaluesOnly)
+                               .eigenvalues()
+                               .tail<1>()[0];
+      const ExtremePoint p = range.farthest(a / d, b / k).value();
+      BOOST_TEST(std::abs(a / d * p.d + b / k * p.k - truth) <= 1e-10);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(consistent_masses_change_nothing) {
   RandomNets random(2);
   for (int i = 0; i < 20; ++i) BOOST_TEST_CONTEXT("net " << i) {

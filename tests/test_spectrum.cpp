@@ -351,6 +351,18 @@ BOOST_AUTO_TEST_CASE(a_filtered_solve_finds_the_same_eigenvalue_to_the_same_resi
   }
 }
 
+// Each step is a product with the polynomial, of degree 16.
+BOOST_AUTO_TEST_CASE(a_filter_leaves_a_fifth_of_the_steps_where_the_largest_eigenvalues_lie_close) {
+  for (const int n : {300, 1000}) BOOST_TEST_CONTEXT(n << " particles") {
+      const StructuralMatrices s = prepare(fixed_chain(n));
+      const LinearOperator a = scaled_stiffness(s);
+      const SymmetricEigenpairs filtered = largest_eigenpair(a, {.tolerance = 1e-6}),
+                                plain = largest_eigenpairs(a, 1, {.tolerance = 1e-6});
+      BOOST_TEST(filtered.converged);
+      BOOST_TEST(filtered.products / 16 <= plain.products / 5);
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_filter_passes_over_what_is_far_below_zero) {
   for (const double lowest : {-0.5, -1.0, -30.0}) BOOST_TEST_CONTEXT("from " << lowest) {
       Vector d(300);

@@ -37,13 +37,6 @@ struct AltitudeShape {
   return u.get(0, lane) - (s.w1 * u.get(1, lane) + s.w2 * u.get(2, lane) + s.w3 * u.get(3, lane));
 }
 
-std::vector<std::array<int, 4>> particles_of(const std::vector<Altitude>& altitudes) {
-  std::vector<std::array<int, 4>> particles;
-  particles.reserve(altitudes.size());
-  for (const Altitude& a : altitudes) particles.push_back(a.particles);
-  return particles;
-}
-
 }  // namespace
 
 double altitude(const std::array<Eigen::Vector3d, 4>& x) {
@@ -51,7 +44,7 @@ double altitude(const std::array<Eigen::Vector3d, 4>& x) {
 }
 
 Altitudes::Altitudes(const std::vector<Altitude>& altitudes, int free_count)
-    : elements_(particles_of(altitudes), free_count), rest_(elements_.batches()) {
+    : elements_(altitudes, free_count), rest_(elements_.batches()) {
   for (int slot = 0; slot < batch_size * elements_.batches(); ++slot)
     rest_[slot / batch_size].h[slot % batch_size] = altitudes[std::min(slot, elements_.size() - 1)].rest;
 }

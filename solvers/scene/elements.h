@@ -65,6 +65,11 @@ class Elements {
  public:
   using Particles = std::array<int, corners>;
 
+  /// Of what has its `particles`.
+  template <class Element>
+  Elements(const std::vector<Element>& elements, int free_count)
+      : Elements(particles_of(elements), free_count) {}
+
   Elements(std::vector<Particles> particles, int free_count)
       : particles_(std::move(particles)),
         size_(static_cast<int>(particles_.size())),
@@ -125,6 +130,14 @@ class Elements {
   }
 
  private:
+  template <class Element>
+  static std::vector<Particles> particles_of(const std::vector<Element>& elements) {
+    std::vector<Particles> particles;
+    particles.reserve(elements.size());
+    for (const Element& e : elements) particles.push_back(e.particles);
+    return particles;
+  }
+
   std::vector<Particles> particles_;
   int size_;
   int free_count_;

@@ -1,19 +1,8 @@
 #include "solvers/scene/hinge_angles.h"
 
 namespace springstab {
-namespace {
-
-std::vector<std::array<int, 4>> particles_of(const std::vector<Hinge>& hinges) {
-  std::vector<std::array<int, 4>> particles;
-  particles.reserve(hinges.size());
-  for (const Hinge& h : hinges) particles.push_back(h.particles);
-  return particles;
-}
-
-}  // namespace
-
 HingeAngles::HingeAngles(const std::vector<Hinge>& hinges, int free_count)
-    : elements_(particles_of(hinges), free_count), rest_angles_(elements_.batches()) {
+    : elements_(hinges, free_count), rest_angles_(elements_.batches()) {
   for (int slot = 0; slot < batch_size * elements_.batches(); ++slot) {
     const double angle = hinges[std::min(slot, elements_.size() - 1)].rest_angle;
     rest_angles_[slot / batch_size].cos[slot % batch_size] = std::cos(angle);

@@ -1,22 +1,11 @@
 #include "solvers/scene/triangle_conditions.h"
 
 namespace springstab {
-namespace {
-
-std::vector<std::array<int, 3>> particles_of(const std::vector<RestTriangle>& triangles) {
-  std::vector<std::array<int, 3>> particles;
-  particles.reserve(triangles.size());
-  for (const RestTriangle& t : triangles) particles.push_back(t.particles);
-  return particles;
-}
-
-}  // namespace
-
 // With the edges (u1, v1), (u2, v2) from corner 0 and their determinant D = u1 v2 - u2 v1, twice the signed
 // area: φ_1 = (u v2 - v u2)/D and φ_2 = (v u1 - u v1)/D.
 TriangleConditions::TriangleConditions(const std::vector<RestTriangle>& triangles, AreaScaling scaling,
                                        int free_count)
-    : elements_(particles_of(triangles), free_count), shapes_(elements_.batches()) {
+    : elements_(triangles, free_count), shapes_(elements_.batches()) {
   for (int slot = 0; slot < batch_size * elements_.batches(); ++slot) {
     const int t = std::min(slot, elements_.size() - 1);
     const auto& uv = triangles[t].uv;

@@ -1,5 +1,6 @@
 // Long runs that are stopped at any moment, by kill -9 or Ctrl-C: what they had finished is kept, and the
-// same command with --resume ends with the same bytes as one that was left alone, but for what a clock says.
+// same command with --resume ends with the same bytes as one that was left alone, but for what a clock says,
+// on another number of threads too.
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -19,17 +20,15 @@
 
 #include "experiments/journal.h"
 #include "solvers/io/input_error.h"
+#include "tests/results.h"
 
 namespace fs = std::filesystem;
 using namespace springstab;
+using springstab::test::content_of;
+using springstab::test::files_in;
+using springstab::test::untimed;
 
 namespace {
-
-std::string content_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 void write(const fs::path& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
@@ -87,70 +86,6 @@ class Command {
   pid_t process_;
 };
 
-// Without what is measured by a clock, and what is fitted to that.
-Json untimed(Json report) {
-  static const std::set<std::string> timed{"cpu_seconds", "median_seconds", "set_up_seconds",
-                                           "exponent",    "half_width",     "tables"};
-  if (report.is_object())
-    for (const std::string& key : timed) report.erase(key);
-  for (Json& part : report)
-    if (part.is_structured()) part = untimed(part);
-  return report;
-}
-
-// The fields of a line of CSV; commas within quotes separate nothing.
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields{""};
-  bool quoted = false;
-  for (char c : line) {
-    quoted = quoted != (c == '"');
-    if (c == ',' && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  return fields;
-}
-
-// A CSV file without its columns of CPU seconds, by the headings that stand above them.
-std::string untimed_csv(const std::string& csv) {
-  static const std::set<std::string> timed{"cpu_seconds", "median", "least", "most", "relative"};
-  std::set<std::size_t> left_out;
-  std::istringstream in(csv);
-  std::string result;
-  for (std::string line; std::getline(in, line);) {
-    const std::vector<std::string> fields = fields_of(line);
-    std::set<std::size_t> headings;
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      if (timed.contains(fields[i])) headings.insert(i);
-    if (!headings.empty()) left_out = headings;
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      if (!left_out.contains(i)) result += fields[i] + ',';
-    result += '\n';
-  }
-  return result;
-}
-
-// A file's content as far as two runs must agree on it; of pictures with times in them that it is there.
-std::string comparable(const fs::path& file) {
-  const std::string type = file.extension();
-  if (type == ".png" || type == ".svg") return "";
-  return type == ".csv" ? untimed_csv(content_of(file)) : content_of(file);
-}
-
-// Of a run's results: not what it keeps for itself, nor what it writes aside.
-std::map<std::string, std::string> files_in(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  if (!fs::exists(folder)) return files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = fs::relative(entry.path(), folder);
-    if (entry.is_regular_file() && name.find(".part") == std::string::npos && !name.ends_with(".journal") &&
-        !name.ends_with(".checkpoint") && !name.ends_with(".kept"))
-      files[name] = comparable(entry.path());
-  }
-  return files;
-}
-
 // What the same command gives when nothing stops it, and how long it takes.
 struct Undisturbed {
   Json report;
@@ -202,7 +137,8 @@ void kill_and_resume(const fs::path& folder, Arguments arguments, const Undistur
     return std::pair(true, err);
   };
   int killed = 0, resumed = 0;
-  arguments.push_back("--resume");  // also of the first: there is nothing yet, and it begins
+  // --resume also of the first: there is nothing yet, and it begins
+  arguments.insert(arguments.end(), {"--resume", "--threads", "3"});
   while (killed < kills) {
     const auto [finished, err] = run_once(delay(random));
     resumed += err.find("going on") != std::string::npos;

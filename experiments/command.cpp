@@ -103,7 +103,7 @@ void add_limits(CLI::App& app, const CommonOptions& common, LimitsOptions& o, st
       "growth_rate is how\n"
       "fast the motion itself grows [1/s]. K and D need not be symmetric: then nothing is certified.\n"
       "mesh says what was mended in a mesh file: a surface of springs or triangles (.obj), or a solid of\n"
-      "tetrahedra (.msh, .veg, .vtk).\n"
+      "tetrahedra (.msh, .veg, .vtk); its texture_map, by which factor the cloth differs from it at most.\n"
       "Exit status 3: the --method asked for has no stable step.\n\n"
       "examples: springstab limits --grid 32x32 --pin first-row\n"
       "          springstab limits skirt.obj --method symplectic-euler --json\n"

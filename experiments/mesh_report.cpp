@@ -18,8 +18,43 @@ class Counted {
   std::string list_;
 };
 
-void note(const MeshFile& file, const std::string& what) {
-  std::cerr << "springstab: note: " << file.path << ": " << what << '\n';
+void say(const std::string& kind, const std::string& place, const std::string& what) {
+  std::cerr << "springstab: " << kind << ": " << place << ": " << what << '\n';
+}
+
+void note(const MeshFile& file, const std::string& what) { say("note", file.path, what); }
+
+void print_texture_notes(const MeshFile& file) {
+  if (!file.texture_map) return;
+  const TextureMap& map = *file.texture_map;
+  const std::string face = file.path + ':' + std::to_string(map.line);
+  if (file.rest_shape != RestShape::texture)
+    return say("note", face,
+               "this face has no area in the texture map, which is not used: all faces rest as they lie");
+  if (map.strained == 0) return;
+  const std::string scale =
+      map.unit == map.area_unit
+          ? text("though the map has the mesh's area (texture_unit %.4g m)", map.unit)
+          : text("at a texture_unit of %.4g m; the mesh's area asks for %.4g m", map.unit, map.area_unit);
+  say("warning", face,
+      text("the cloth starts strained: %d of %d triangles differ from the texture map by more than a factor "
+           "of %g in length, this face by %.4g, ",
+           map.strained, map.triangles, straining_factor, map.largest_factor) +
+          scale + "; without texture coordinates (vt) faces rest as they lie");
+}
+
+// Null where there is none, in a plane, and for springs; of one that is not used the line alone.
+Json texture_json(const MeshFile& file) {
+  if (!file.texture_map) return nullptr;
+  const TextureMap& map = *file.texture_map;
+  if (file.rest_shape != RestShape::texture) return {{"used", false}, {"line", map.line}};
+  return {{"used", true},
+          {"line", map.line},
+          {"texture_unit", number(map.unit)},
+          {"area_unit", number(map.area_unit)},
+          {"triangles", map.triangles},
+          {"strained_triangles", map.strained},
+          {"largest_factor", number(map.largest_factor)}};
 }
 
 }  // namespace
@@ -44,6 +79,7 @@ void print_mesh_notes(const Subject& subject) {
   if (r.crowded > 0 && !file.solid)
     note(file, text("%d %s more than two faces: every two of them resist bending there", r.crowded,
                     r.crowded == 1 ? "edge has" : "edges have"));
+  print_texture_notes(file);
 }
 
 Json mesh_json(const Subject& subject) {
@@ -63,6 +99,7 @@ Json mesh_json(const Subject& subject) {
     json["degenerate_faces"] = r.degenerate_elements;
     json["duplicate_faces"] = r.duplicate_elements;
     json["non_manifold_edges"] = r.crowded;
+    json["texture_map"] = texture_json(file);
   }
   return json;
 }

@@ -1,18 +1,25 @@
 // Texture coordinates in OBJ files: which corner has which, when a mesh has none, and what is refused.
 #include <boost/test/unit_test.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "experiments/input/subject.h"
+#include "experiments/mesh_report.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/obj.h"
+#include "tests/command.h"
 #include "tests/shared_data.h"
 
 using Eigen::Vector2d;
+using springstab::ClothMaterial;
 using springstab::InputError;
+using springstab::Json;
 using springstab::Mesh;
+using springstab::Subject;
 
 namespace {
 
@@ -39,6 +46,49 @@ class File {
 Mesh obj(const std::string& text) { return springstab::read_obj(File(text).name()); }
 
 const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+
+// Two rectangles of 3 by 4 and of 5 by 4 m, folded at a right angle. The faces stand on the
+// lines 17 to 20.
+const std::string folded =
+    "v 0 0 0\nv 0 4 0\nv 3 0 0\nv 3 4 0\nv 3 0 5\nv 3 4 5\n"
+    "# its map:\n";
+const std::string folded_faces = "f 1/1 3/3 4/4\nf 1/1 4/4 2/2\nf 3/3 5/5 6/6\nf 3/7 6/8 4/9\n";
+
+/// The mesh above, its corners unfolded to the plane and mapped; the last triangle has corners of its own.
+template <class Map>
+std::string folded_with(const Map& map) {
+  std::string text = folded;
+  const std::vector<Vector2d> flat{{0, 0}, {0, 4}, {3, 0}, {3, 4}, {8, 0}, {8, 4}, {3, 0}, {8, 4}, {3, 4}};
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    const Vector2d uv = map(flat[i], i >= 6);
+    char line[100];
+    std::snprintf(line, sizeof line, "vt %.17g %.17g\n", uv.x(), uv.y());
+    text += line;
+  }
+  return text + folded_faces;
+}
+
+// Turned, shifted, and mirrored where it is the last triangle.
+Vector2d moved(Vector2d p, bool last) {
+  if (last) p.x() = -p.x();
+  return {0.6 * p.x() - 0.8 * p.y() + 7, 0.8 * p.x() + 0.6 * p.y() - 2};
+}
+
+Subject cloth(const std::string& text, std::optional<double> texture_unit = {}) {
+  const File file(text);
+  springstab::SceneDescription scene;
+  scene.geometry = file.name();
+  ClothMaterial material;
+  material.texture_unit = texture_unit;
+  scene.material = material;
+  return Subject(scene);
+}
+
+double strain_energy(Subject& subject) { return subject.scene()->elastic_energy(subject.initial_state(1).x); }
+
+bool close(const Json& value, double expected, double tolerance = 1e-12) {
+  return std::abs(value.get<double>() - expected) <= tolerance * std::abs(expected);
+}
 
 }  // namespace
 
@@ -98,11 +148,115 @@ BOOST_AUTO_TEST_CASE(malformed_coordinates_and_indices_are_refused_with_their_li
   }
 }
 
+// Also turned, mirrored, cut along a seam and in another unit: no triangle is strained, and nothing is said.
+BOOST_AUTO_TEST_CASE(an_isometric_map_strains_nothing) {
+  for (const double scale : {1., 0.01}) {
+    const auto map = [&](const Vector2d& p, bool last) { return Vector2d(scale * moved(p, last)); };
+    Subject subject = cloth(folded_with(map));
+    const Json found = springstab::mesh_json(subject)["texture_map"];
+    BOOST_TEST(found.at("used") == true);
+    BOOST_TEST(close(found.at("texture_unit"), 1 / scale));
+    BOOST_TEST(found.at("triangles") == 4);
+    BOOST_TEST(found.at("strained_triangles") == 0);
+    BOOST_TEST(close(found.at("largest_factor"), 1));
+    BOOST_TEST(strain_energy(subject) < 1e-20);
+  }
+}
+
+// Of a map that is s times as large, with A the mesh's area of 32 m²: |w_u| = |w_v| = 1/s, w_u·w_v = 0, and
+// E = ½ (κ_u + κ_v) s² A (1/s - 1)². With κ = 1000 N/m that is 32 000 (1 - s)² J.
+BOOST_AUTO_TEST_CASE(a_map_that_is_too_large_or_too_small_has_that_factor) {
+  for (const double s : {3., 1 / 3., 2.01, 1.99}) {
+    Subject subject = cloth(folded_with(moved), s);
+    const Json found = springstab::mesh_json(subject)["texture_map"];
+    BOOST_TEST(close(found.at("largest_factor"), std::max(s, 1 / s)));
+    BOOST_TEST(found.at("strained_triangles") == (s == 1.99 ? 0 : 4));
+    BOOST_TEST(close(found.at("texture_unit"), s));
+    BOOST_TEST(close(found.at("area_unit"), 1));
+    BOOST_TEST(close(strain_energy(subject), 32000 * (1 - s) * (1 - s), 1e-9));
+  }
+}
+
+// The last face 4 times as long in u and a quarter as long in v: the area is the same, and so is the unit.
+// With shear in place of that, by x += 3 y, the singular values are (√13 ± 3)/2.
+BOOST_AUTO_TEST_CASE(the_face_that_is_strained_most_is_named) {
+  const auto stretched = [](const Vector2d& p, bool last) {
+    return last ? Vector2d(4 * p.x(), p.y() / 4) : p;
+  };
+  const auto sheared = [](const Vector2d& p, bool last) {
+    return last ? Vector2d(p.x() + 3 * p.y(), p.y()) : p;
+  };
+  for (const auto& [text, factor] :
+       {std::pair(folded_with(stretched), 4.), std::pair(folded_with(sheared), (std::sqrt(13.) + 3) / 2)}) {
+    const Json found = springstab::mesh_json(cloth(text))["texture_map"];
+    BOOST_TEST(close(found.at("largest_factor"), factor));
+    BOOST_TEST(found.at("strained_triangles") == 1);
+    BOOST_TEST(found.at("line") == 20);
+    BOOST_TEST(close(found.at("texture_unit"), 1));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(maps_that_are_not_used_are_told_apart) {
+  const auto pressed = [](const Vector2d& p, bool last) { return last ? Vector2d(p.x(), p.x()) : p; };
+  Subject subject = cloth(folded_with(pressed));
+  const Json found = springstab::mesh_json(subject)["texture_map"];
+  BOOST_TEST((found == Json{{"used", false}, {"line", 20}}));
+  BOOST_TEST(strain_energy(subject) < 1e-20);
+  const std::string flat = "vt 0 0\nvt 9 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+  BOOST_TEST(springstab::mesh_json(cloth(vertices + flat))["texture_map"].is_null());
+  const File springs(folded_with(pressed));
+  springstab::InputOptions input;
+  input.file = springs.name();
+  BOOST_TEST(springstab::mesh_json(Subject(input))["texture_map"].is_null());
+}
+
+BOOST_FIXTURE_TEST_CASE(a_straining_map_is_one_line_before_the_run, springstab::test::Command) {
+  const auto scene = [&](const std::string& name, const std::string& unit) {
+    file(name, R"({"geometry": {"mesh": "folded.obj"}, "pins": [0],
+                   "material": {"model": "baraff-witkin", "texture_unit": )" +
+                   unit + "}}");
+    return (*this)("simulate " + name + " --method rk4 --duration 1e-4 --json");
+  };
+  file("folded.obj", folded_with(moved));
+  const springstab::test::Outcome sound = scene("sound.json", "1"), strained = scene("strained.json", "3");
+  BOOST_TEST(sound.status == 0);
+  BOOST_TEST(sound.err == "");
+  BOOST_TEST(strained.status == 0);
+  BOOST_TEST(springstab::test::lines(strained.err) == 1);
+  BOOST_TEST(strained.err.starts_with("springstab: warning: folded.obj:17: "));
+  for (const char* part : {"strained", "4 of 4 triangles", "this face by 3,", "texture_unit of 3 m",
+                           "the mesh's area asks for 1 m", "without texture coordinates (vt)"})
+    BOOST_TEST(strained.err.find(part) != std::string::npos, part);
+  BOOST_TEST(strained.json().at("mesh").at("texture_map").at("strained_triangles") == 4);
+}
+
 BOOST_AUTO_TEST_CASE(a_published_cloth_keeps_its_coordinates) {
   if (const auto path = springstab::test::shared_data("meshes/pbd_plane_30x30.obj")) {
     const Mesh mesh = springstab::read_obj(path->string());
     BOOST_REQUIRE_EQUAL(mesh.corner_uv.size(), mesh.face_vertices.size());
     for (const Vector2d& uv : mesh.corner_uv) BOOST_TEST((uv.minCoeff() >= 0 && uv.maxCoeff() <= 1));
+  }
+}
+
+// The numbers of two published meshes: one that was bent as cloth is, and eyes whose map is a picture's.
+BOOST_AUTO_TEST_CASE(published_maps_are_told_from_pictures) {
+  const auto found = [](const std::string& name) -> Json {
+    const auto path = springstab::test::shared_data("meshes/" + name);
+    if (!path) return nullptr;
+    springstab::InputOptions input;
+    input.file = path->string();
+    input.material = "baraff-witkin";
+    return springstab::mesh_json(Subject(input))["texture_map"];
+  };
+  if (const Json bent = found("vega_bend2_quads.obj"); !bent.is_null()) {
+    BOOST_TEST(bent.at("strained_triangles") == 0);
+    BOOST_TEST(close(bent.at("largest_factor"), 1.240088189943711, 1e-9));
+  }
+  if (const Json eyes = found("sofa_frog_eyes.obj"); !eyes.is_null()) {
+    BOOST_TEST(eyes.at("strained_triangles") == 559);
+    BOOST_TEST(eyes.at("triangles") == 1024);
+    BOOST_TEST(eyes.at("line") == 952);
+    BOOST_TEST(close(eyes.at("largest_factor"), 4885.221311769404, 1e-9));
   }
 }
 

@@ -212,6 +212,11 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, con
                                       ? resolve(description.pins, *mesh_file_)
                                       : resolve(description.pins, grid, static_cast<int>(cloth.rest.size()));
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
+  if constexpr (std::is_same_v<Cloth, TriangleCloth>)
+    if (mesh_file_) {
+      mesh_file_->rest_shape = cloth.rest_shape;
+      mesh_file_->texture_map = cloth.texture_map;
+    }
   pinned_ = pinned;
   const std::string pins_source = description.pins.source.empty() ? source : description.pins.source;
   scene_ = naming(pins_source, [&] {

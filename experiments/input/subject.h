@@ -30,6 +30,10 @@ struct MeshFile {
   bool solid;                             // of tetrahedra
   std::vector<Eigen::Vector3d> vertices;  // [m]
   MeshRepair repair;
+
+  // of a cloth of triangles:
+  std::optional<RestShape> rest_shape{};
+  std::optional<TextureMap> texture_map{};
 };
 
 /// A system with its start and everything that limits and reports need to know about it.

@@ -1,7 +1,5 @@
 #include "solvers/scene/triangle_cloth.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -27,41 +25,6 @@ std::string shown(double value) {
 
 bool positive(double value) { return value > 0 && std::isfinite(value); }
 
-/// Whether two sides of a triangle, in the plane or in space, span an area.
-template <class V>
-bool has_area(const V& a, const V& b) {
-  const double longest_squared = std::max({a.squaredNorm(), b.squaredNorm(), (a - b).squaredNorm()});
-  double doubled;
-  if constexpr (V::RowsAtCompileTime == 3) {
-    doubled = a.cross(b).norm();
-  } else {
-    doubled = std::abs(a.x() * b.y() - a.y() * b.x());
-  }
-  return doubled / 2 > 1e-12 * longest_squared;
-}
-
-// --- meshes: triangles ---
-
-/// Three corners of a face, as places in Mesh::face_vertices.
-struct FaceTriangle {
-  std::array<int, 3> corners;
-  int face;
-};
-
-std::vector<FaceTriangle> fans(const Mesh& mesh) {
-  std::vector<FaceTriangle> triangles;
-  for (int f = 0; f < mesh.faces(); ++f)
-    for (int k = mesh.face_offsets[f] + 1; k + 1 < mesh.face_offsets[f + 1]; ++k)
-      triangles.push_back({{mesh.face_offsets[f], k, k + 1}, f});
-  return triangles;
-}
-
-std::array<Vector3d, 3> positions(const Mesh& mesh, const FaceTriangle& t) {
-  std::array<Vector3d, 3> x;
-  for (int c = 0; c < 3; ++c) x[c] = mesh.vertices[mesh.face_vertices[t.corners[c]]];
-  return x;
-}
-
 void check_triangle(const Mesh& mesh, const FaceTriangle& t) {
   const auto x = positions(mesh, t);
   std::string name = "triangle ";
@@ -70,100 +33,8 @@ void check_triangle(const Mesh& mesh, const FaceTriangle& t) {
     if (const double side = (x[(c + 1) % 3] - x[c]).norm(); !(side >= shortest_side && side <= longest_side))
       fail_at_face(mesh, t.face,
                    name + " has a side of " + shown(side) + " m, expected a length between 1e-60 and 1e60 m");
-  if (!has_area<Vector3d>(x[1] - x[0], x[2] - x[0]))
+  if (!has_area(x[1] - x[0], x[2] - x[0]))
     fail_at_face(mesh, t.face, name + " has no area, expected corners that are not on a line");
-}
-
-// --- meshes: where the triangles lie in (u, v) ---
-
-using TriangleUv = std::array<Vector2d, 3>;
-
-/// Two orthogonal unit vectors.
-struct Frame {
-  Vector3d u, v;
-
-  Vector2d coordinates(const Vector3d& x) const { return {u.dot(x), v.dot(x)}; }
-};
-
-/// The frame of a plane with u along the projection of a direction that is not normal to it. v points to
-/// where the largest of its components is positive.
-Frame frame(const Vector3d& unit_normal, const Vector3d& direction) {
-  const Vector3d u = (direction - unit_normal.dot(direction) * unit_normal).normalized();
-  Vector3d v = unit_normal.cross(u);
-  Eigen::Index largest = 0;
-  v.cwiseAbs().maxCoeff(&largest);
-  return {u, v[largest] < 0 ? Vector3d(-v) : v};
-}
-
-/// The frame of the plane that all vertices lie in, if there is one.
-std::optional<Frame> plane_of(const Mesh& mesh) {
-  Vector3d mean(0, 0, 0);
-  for (const Vector3d& x : mesh.vertices) mean += x / static_cast<double>(mesh.vertices.size());
-  double farthest = 0;
-  for (const Vector3d& x : mesh.vertices) farthest = std::max(farthest, (x - mean).norm());
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Vector3d& x : mesh.vertices) {
-    const Vector3d d = (x - mean) / farthest;
-    moments += d * d.transpose();
-  }
-  const Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
-  for (const Vector3d& x : mesh.vertices)
-    if (std::abs(normal.dot(x - mean)) > 1e-9 * farthest) return std::nullopt;
-  int axis = 0;  // the longest projection is that of the axis least along the normal
-  for (int other = 1; other < 3; ++other)
-    if (std::abs(normal[other]) < std::abs(normal[axis]) - 1e-9) axis = other;
-  return frame(normal, Vector3d::Unit(axis));
-}
-
-double area(const TriangleUv& uv) {
-  const Vector2d a = uv[1] - uv[0], b = uv[2] - uv[0];
-  return std::abs(a.x() * b.y() - a.y() * b.x()) / 2;
-}
-
-TriangleUv own_plane(const std::array<Vector3d, 3>& x) {
-  const Vector3d normal = (x[1] - x[0]).normalized().cross((x[2] - x[0]).normalized()).normalized();
-  const bool along_x = normal.cross(Vector3d::UnitX()).norm() >= 1e-3;
-  const Frame own = frame(normal, along_x ? Vector3d::UnitX() : Vector3d::UnitZ());
-  return {Vector2d(0, 0), own.coordinates(x[1] - x[0]), own.coordinates(x[2] - x[0])};
-}
-
-std::vector<TriangleUv> own_planes(const Mesh& mesh, const std::vector<FaceTriangle>& triangles) {
-  std::vector<TriangleUv> uv;
-  for (const FaceTriangle& t : triangles) uv.push_back(own_plane(positions(mesh, t)));
-  return uv;
-}
-
-double total_area(const std::vector<TriangleUv>& triangles) {
-  double sum = 0;
-  for (const TriangleUv& uv : triangles) sum += area(uv);
-  return sum;
-}
-
-/// By the texture coordinates, if they will do.
-std::optional<std::vector<TriangleUv>> textured(const Mesh& mesh, const std::vector<FaceTriangle>& triangles,
-                                                std::optional<double> unit) {
-  if (mesh.corner_uv.size() != mesh.face_vertices.size()) return std::nullopt;
-  std::vector<TriangleUv> all;
-  for (const FaceTriangle& t : triangles) {
-    TriangleUv uv;
-    for (int c = 0; c < 3; ++c) uv[c] = mesh.corner_uv[t.corners[c]];
-    if (!has_area<Vector2d>(uv[1] - uv[0], uv[2] - uv[0])) return std::nullopt;
-    all.push_back(uv);
-  }
-  const double scale = unit ? *unit : std::sqrt(total_area(own_planes(mesh, triangles)) / total_area(all));
-  for (TriangleUv& uv : all)
-    for (Vector2d& point : uv) point *= scale;
-  return all;
-}
-
-std::vector<TriangleUv> in_plane(const Mesh& mesh, const std::vector<FaceTriangle>& triangles,
-                                 const Frame& plane) {
-  std::vector<TriangleUv> all;
-  for (const FaceTriangle& t : triangles) {
-    const auto x = positions(mesh, t);
-    all.push_back({Vector2d(0, 0), plane.coordinates(x[1] - x[0]), plane.coordinates(x[2] - x[0])});
-  }
-  return all;
 }
 
 // --- hinges ---
@@ -273,27 +144,21 @@ TriangleCloth make_cloth(const Mesh& mesh, const ClothMaterial& material) {
   check(mesh);
   const std::vector<FaceTriangle> parts = fans(mesh);
   for (const FaceTriangle& t : parts) check_triangle(mesh, t);
-  const std::optional<Frame> plane = plane_of(mesh);
-  std::vector<TriangleUv> uv;
-  if (plane) {
-    uv = in_plane(mesh, parts, *plane);
-  } else if (auto texture = textured(mesh, parts, material.texture_unit)) {
-    uv = std::move(*texture);
-  } else {
-    uv = own_planes(mesh, parts);
-  }
+  const RestCoordinates rest = rest_coordinates(mesh, parts, material.texture_unit);
 
   TriangleCloth cloth;
   cloth.material = material;
   cloth.rest = mesh.vertices;
+  cloth.rest_shape = rest.shape;
+  cloth.texture_map = rest.map;
   cloth.mass.assign(cloth.rest.size(), material.particle_mass.value_or(0));
   std::vector<RestTriangle> triangles;
   for (std::size_t t = 0; t < parts.size(); ++t) {
-    RestTriangle triangle{{}, uv[t]};
+    RestTriangle triangle{{}, rest.uv[t]};
     for (int c = 0; c < 3; ++c) {
       triangle.particles[c] = mesh.face_vertices[parts[t].corners[c]];
       if (!material.particle_mass)
-        cloth.mass[triangle.particles[c]] += material.area_density * area(uv[t]) / 3;
+        cloth.mass[triangle.particles[c]] += material.area_density * area(rest.uv[t]) / 3;
     }
     triangles.push_back(triangle);
   }
@@ -302,7 +167,7 @@ TriangleCloth make_cloth(const Mesh& mesh, const ClothMaterial& material) {
       fail_at_vertex(mesh, v,
                      "has a mass of " + shown(cloth.mass[v]) +
                          " kg from the area of its faces, expected a positive finite one");
-  finish(cloth, std::move(triangles), plane.has_value(), mesh.source);
+  finish(cloth, std::move(triangles), rest.shape == RestShape::plane, mesh.source);
   return cloth;
 }
 

@@ -6,19 +6,8 @@
 // corner, and polygons should be convex); the cell of a grid between the particles (i, j) and (i+1, j+1),
 // which are joined.
 //
-// Where a triangle lies in the cloth's own coordinates (u, v), in metres:
-// - on a grid, u = x along a row, v = z from row to row;
-// - on a mesh that lies in a plane (no vertex farther from it than 1e-9 of the distance of the farthest
-// vertex from
-//   their mean), u along that of the world's axes that has the longest projection to the plane (the first of
-//   equal ones), projected; v in the plane at a right angle to it;
-// - else by the texture coordinates, if every corner has them and they give every triangle an area. One unit
-// of them
-//   is ClothMaterial::texture_unit;
-// - else as the triangle is, with u along the projection of the x axis to its plane, or of the z axis where
-// that of x
-//   is shorter than 1/1000.
-// A triangle without area is one with less than 1e-12 of the square of its longest side.
+// Where a triangle lies in the cloth's own coordinates (u, v) [m]: on a grid, u = x along a row, v = z from
+// row to row; on a mesh, see rest_coordinates.h.
 #pragma once
 
 #include <memory>
@@ -26,6 +15,7 @@
 
 #include "solvers/scene/hinge_angles.h"
 #include "solvers/scene/mesh.h"
+#include "solvers/scene/rest_coordinates.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/stretch_shear.h"
 
@@ -60,6 +50,8 @@ struct TriangleCloth {
   std::vector<RestTriangle> triangles;
   std::vector<Hinge> hinges;
   ClothMaterial material;
+  RestShape rest_shape = RestShape::plane;
+  std::optional<TextureMap> texture_map{};
 };
 
 /// Every particle weighs area_density · spacing². Throws InputError where `check` does, for a grid without a

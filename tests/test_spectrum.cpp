@@ -17,6 +17,7 @@
 
 #include "analysis/arpack.h"
 #include "analysis/chebyshev_filter.h"
+#include "analysis/definiteness.h"
 #include "analysis/method_limits.h"
 #include "analysis/spectrum.h"
 #include "analysis/transition_operator.h"
@@ -643,6 +644,46 @@ BOOST_AUTO_TEST_CASE(is_below_proves_no_more_than_what_is_true) {
   BOOST_TEST(!is_below(zero, 0));
   BOOST_TEST(!is_below(zero, -1));
   BOOST_TEST(!is_below(zero, nan_value));
+}
+
+// The factor of one proof tells the next how much rounding to allow for, which is then taken off, not added.
+BOOST_AUTO_TEST_CASE(a_proof_after_another_proves_no_more_than_alone) {
+  for (const int n : {5, 20, 60}) BOOST_TEST_CONTEXT(n << " unknowns") {
+      const RandomPencil pencil(n, 5);
+      DefinitenessProof proof(prepare(sparse(pencil.k), sparse(pencil.m)));
+      BOOST_TEST(proof.holds(pencil.k0 * (1 + 1e-9), 0, 1));
+      for (const double below : {1e-15, 1e-14, 1e-13})
+        BOOST_TEST(!proof.holds(pencil.k0 * (1 - below), 0, 1));
+    }
+}
+
+// Gershgorin's discs of a ring end at k0 itself, so that only rounding could prove k0 to be smaller.
+BOOST_AUTO_TEST_CASE(discs_that_end_at_k0_prove_nothing_there) {
+  std::vector<Link> ring;
+  for (int i = 0; i < 8; ++i) ring.push_back({i, (i + 1) % 8, 1});
+  for (const double scale : {1.0, 1.0 / 3, 1e9 / 7}) {
+    const StructuralMatrices s = prepare(scale * stiffness(8, ring));
+    for (const double below : {0.0, eps / 2, 2 * eps}) BOOST_TEST(!is_below(s, 4 * scale * (1 - below)));
+    BOOST_TEST(is_below(s, 4 * scale * (1 + 1e-11)));
+  }
+}
+
+// K = [[a, -1, -ε ...], [-1, a, -ε ...], ..., 4ε on the diagonal]: adding its ε to 1 + a leaves 1 + a, so
+// that the first rows seem to be dominated by a > 1. But x = (1, 1, ½, ½, ...) has xᵀKx = 2 (a - 1) - n ε <
+// 0.
+BOOST_AUTO_TEST_CASE(small_entries_that_a_sum_loses_are_counted) {
+  const int n = 500;
+  const double small = 0.75 * eps, a = 1 + 150 * eps;
+  BOOST_TEST(1 + a + small == 1 + a);
+  BOOST_TEST(2 * (a - 1) - n * small < 0);
+  std::vector<Eigen::Triplet<double>> entries{{0, 0, a}, {1, 1, a}, {0, 1, -1}, {1, 0, -1}};
+  for (int j = 2; j < n + 2; ++j) {
+    entries.emplace_back(j, j, 4 * small);
+    for (const int i : {0, 1}) entries.emplace_back(i, j, -small), entries.emplace_back(j, i, -small);
+  }
+  SparseMatrix k(n + 2, n + 2);
+  k.setFromTriplets(entries.begin(), entries.end());
+  BOOST_TEST(!DefinitenessProof(prepare(k)).holds(0, 0, -1));
 }
 
 BOOST_AUTO_TEST_CASE(a_structure_that_buckles_is_called_indefinite) {

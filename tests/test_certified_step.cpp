@@ -239,6 +239,88 @@ BOOST_AUTO_TEST_CASE(the_recommended_step_survives_stiffening) {
     }
 }
 
+// By eigenvalues, of whichever stiffening limits most.
+BOOST_AUTO_TEST_CASE(other_methods_recommended_steps_survive_stiffening) {
+  RandomNets random(17);
+  int by_damping = 0;
+  for (int i = 0; i < 20; ++i) BOOST_TEST_CONTEXT("net " << i) {
+      StructuralMatrices s = matrices(random.net(true));
+      const double alpha = random.log_uniform(-3, -1), safety = 1.5;
+      s.damping += alpha * s.stiffness;
+      StructuralMatrices stiffer = s;
+      stiffer.stiffness *= safety;
+      StructuralMatrices damped = stiffer;
+      damped.damping += (safety - 1) * alpha * s.stiffness;
+      const StiffestMode k0 = stiffest_mode(s);
+      GeneralDamping general(s, k0, {DampingModel::Kind::general, 0, alpha, true}, safety, false);
+      for (const std::string_view method : {"rk2", "rk4"}) {
+        const double each[] = {dense_truth(s, method), dense_truth(stiffer, method),
+                               dense_truth(damped, method)};
+        const double least = *std::min_element(std::begin(each), std::end(each));
+        BOOST_TEST(general.limits(method).recommended.value() == least, tolerance(1e-5));
+        by_damping += least < 0.9 * std::min(each[0], each[1]);
+      }
+    }
+  BOOST_TEST(by_damping > 10);
+}
+
+// Where the first guess is far from what holds, a step in between is found that was proved.
+BOOST_AUTO_TEST_CASE(a_proof_is_searched_far_below_a_wrong_guess) {
+  RandomNets random(18);
+  for (int i = 0; i < 30; ++i) BOOST_TEST_CONTEXT("net " << i) {
+      const StructuralMatrices s = matrices(random.net(i % 2 == 0));
+      const double h = symplectic_truth(s);
+      DefinitenessProof proof(s);
+      for (const double guess : {1.1, 1.7, 20.0}) {
+        const double proved = proved_limit(proof, symplectic_condition(), guess * h).value();
+        BOOST_TEST(proved < h);
+        BOOST_TEST(proved >= (1 - 1e-3 * guess) * h);  // gaps of the guess
+      }
+    }
+}
+
+// Around modes all along the region's top: each side between its neighbours, and the way there from the
+// origin.
+BOOST_AUTO_TEST_CASE(fitted_polygons_lie_inside_the_region) {
+  int sides = 0;
+  for (const std::string_view method : {"explicit-euler", "rk2", "rk4", "symplectic-euler"})
+    BOOST_TEST_CONTEXT(method) {
+      const StabilityRegion& region = stability_region(method);
+      std::vector<ModePoint> modes;
+      for (const RegionPiece& piece : region.pieces(region.natural_window(0)))
+        for (std::size_t i = 0; i < piece.x.size(); i += 8)
+          if (piece.x[i] > 0.1 && piece.y_upper[i] > 0.1) modes.push_back({piece.x[i], piece.y_upper[i]});
+      const PolygonFit fit = inscribed_polygons(method).fit(modes);
+      std::vector<Eigen::Vector2d> corners;
+      for (std::size_t i = 0; i + 1 < fit.edges.size(); ++i) {
+        const HalfPlane &p = fit.edges[i], &q = fit.edges[i + 1];
+        const Eigen::Matrix2d both{{p.x, p.y}, {q.x, q.y}};
+        corners.emplace_back(both.fullPivLu().solve(Eigen::Vector2d(p.bound, q.bound)));
+      }
+      for (std::size_t i = 0; i + 1 < corners.size(); ++i, ++sides) {
+        const Eigen::Vector2d &a = corners[i], &b = corners[i + 1];
+        BOOST_TEST(region.closed_segment_is_stable(a.x(), a.y(), b.x(), b.y()));
+        BOOST_TEST(region.closed_segment_is_stable(0, 0, a.x(), a.y()));
+      }
+    }
+  BOOST_TEST_MESSAGE(sides << " sides");
+  BOOST_TEST(sides > 16);
+}
+
+// Eigenvalues find what proofs do.
+BOOST_AUTO_TEST_CASE(an_estimated_step_is_the_certified_one) {
+  RandomNets random(19);
+  for (int i = 0; i < 20; ++i) BOOST_TEST_CONTEXT("net " << i) {
+      const StructuralMatrices s = matrices(random.net(true));
+      for (const std::string_view method : {"rk2", "rk4"}) {
+        const auto certified = CertifiedSteps(s).certified(method),
+                   estimated = CertifiedSteps(s).estimated(method, {});
+        BOOST_TEST(certified.has_value() == estimated.has_value());
+        if (certified && estimated) BOOST_TEST(*estimated == *certified, tolerance(2e-3));
+      }
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_step_for_every_pose_is_stable_in_each) {
   RandomNets random(5);
   for (int i = 0; i < 60; ++i) BOOST_TEST_CONTEXT("net " << i) {
@@ -445,6 +527,7 @@ BOOST_AUTO_TEST_CASE(estimates_of_large_sheets_enclose_the_truth) {
         BOOST_TEST(*limits.h_certified <= truth);
         BOOST_TEST(truth <= *limits.h_max * (1 + 1e-6));
         BOOST_TEST(*limits.h_certified >= 0.9 * *limits.h_max);
+        BOOST_TEST(*limits.recommended < *limits.h_certified);  // that of the stiffened sheet
       }
     }
   BOOST_TEST(estimates >= 2);
@@ -544,6 +627,7 @@ BOOST_AUTO_TEST_CASE(flutter_is_the_structures_own) {
       prepare_nonsymmetric(k.sparseView(0.0, 0.0), SparseMatrix(), d.sparseView(0.0, 0.0));
   const StiffestMode k0 = stiffest_mode(s);
   BOOST_TEST(k0.value == std::sqrt(5), tolerance(1e-12));
+  BOOST_TEST(k0.residual <= 1e-14 * k0.value);
   GeneralDamping general(s, k0, classify_damping(s), 1.5, true);
   const std::complex<double> root = std::sqrt(std::complex<double>(1e-6 / 4 - 2, 1));
   BOOST_TEST(general.growth().value() == root.real() - 5e-4, tolerance(1e-12));

@@ -799,6 +799,17 @@ BOOST_AUTO_TEST_CASE(limits_with_rayleigh_damping_are_those_of_the_hospital_buil
     }
 }
 
+// Drag on a soft mode: μ is almost -d0 there, and nearer to zero on the stiffest mode.
+BOOST_AUTO_TEST_CASE(the_softest_mode_may_be_the_one_that_limits) {
+  StiffestMode k0 = exactly(4);
+  k0.smallest = 1e-9;
+  const MethodLimits limits = method_limits("explicit-euler", k0, rayleigh(10, 1e-3), 1.5);
+  BOOST_TEST(limits.h_max.value() == 2.0 / 10, tolerance(1e-9));
+  k0.smallest = k0.value;
+  const MethodLimits stiff = method_limits("explicit-euler", k0, rayleigh(10, 1e-3), 1.5);
+  BOOST_TEST(stiff.h_max.value() > 1.01 * 2.0 / 10);
+}
+
 BOOST_AUTO_TEST_CASE(damping_is_rayleigh_exactly_when_it_is) {
   using Kind = DampingModel::Kind;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) BOOST_TEST_CONTEXT("seed " << seed) {

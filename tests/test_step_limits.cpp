@@ -227,6 +227,15 @@ BOOST_AUTO_TEST_CASE(a_gap_ends_what_is_stable) {
   BOOST_TEST(gaps < 15);
 }
 
+// Explicit Euler's region is the triangle 0 < Y < X, Y > 2X - 4. With X = 1 + t/2 and X - Y = (t - ½)²/5 the
+// curve touches a side, turns back, and leaves through the other where t²/5 + 3t/10 = 59/20.
+BOOST_AUTO_TEST_CASE(a_curve_that_touches_the_boundary_goes_on) {
+  const Curve curve{{{1, 0.5}}, {{1 - 0.05, 0.5 + 0.2, -0.2}}};
+  BOOST_TEST(curve.y(0.5) == curve.x(0.5));
+  const double exit = (-0.3 + std::sqrt(0.09 + 4 * 0.2 * 2.95)) / 0.4;
+  BOOST_TEST(close(region_of("explicit-euler").first_exit(curve), exit, 1e-9));
+}
+
 BOOST_AUTO_TEST_CASE(limits_scale_exactly_with_the_unit_of_time) {
   for (const MethodInfo& method : all_methods()) {
     const StabilityRegion& region = region_of(method.name);

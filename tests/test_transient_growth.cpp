@@ -89,6 +89,10 @@ BOOST_AUTO_TEST_CASE(a_line_of_modes_grows_as_its_worst_mode) {
   const double h = 1e-3, k0 = 3.9 / (h * h);
   const double worst = springstab::transient_growth("symplectic-euler", 0, 3.9);
   BOOST_TEST(springstab::transient_growth("symplectic-euler", {.k_max = k0}, h) == worst, tolerance(1e-12));
+  const double k = 0.01 / (h * h), d0 = 0.004 / h, alpha = 0.7 * h;  // of one mode: X = 0.011
+  BOOST_TEST(springstab::transient_growth("explicit-euler", {k, k, d0, alpha}, h) ==
+                 springstab::transient_growth("explicit-euler", 0.011, 0.01),
+             tolerance(1e-12));
   // The unit of time changes nothing.
   BOOST_TEST(springstab::transient_growth("symplectic-euler", {.k_max = 1e-18 * k0}, 1e9 * h) == worst,
              tolerance(1e-9));

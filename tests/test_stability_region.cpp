@@ -520,6 +520,12 @@ BOOST_AUTO_TEST_CASE(the_best_damping_line_is_neutral_or_stable_and_none_reaches
         return *std::max_element(rho.begin(), rho.end());
       };
       BOOST_TEST(worst(best.slope, best.reach * (1 - 1e-9)) <= 1 + 1e-9, method.name << " from " << x0);
+      for (const double aside : {-1e-3, -1e-4, -1e-5, 1e-5, 1e-4, 1e-3}) {
+        const double reach = region.first_exit({{{x0, best.slope + aside}}, {{0, 1}}});
+        if (best.slope + aside >= 0)
+          BOOST_TEST(reach <= best.reach * (1 + 1e-9),
+                     method.name << " from " << x0 << ", aside by " << aside);
+      }
       for (int i = 0; i < 300; ++i) {
         const double slope_of_line = std::tan(1.5 * (i + 0.1) / 300);
         BOOST_TEST(worst(slope_of_line, 1.002 * best.reach) > 1 + 1e-9,

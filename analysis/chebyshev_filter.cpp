@@ -56,7 +56,8 @@ SymmetricEigenpairs largest_eigenpair(const LinearOperator& a, const ArpackOptio
   a.apply(filtered.vectors.col(0), image);
   ++filtered.products;
   filtered.values[0] = filtered.vectors.col(0).dot(image);
-  filtered.residuals[0] = (image - filtered.values[0] * filtered.vectors.col(0)).stableNorm();
+  image -= filtered.values[0] * filtered.vectors.col(0);
+  filtered.residuals[0] = image.stableNorm();
   return filtered;
 }
 

@@ -53,7 +53,8 @@ StiffestMode dense_spectrum(const LinearOperator& s) {
   mode.smallest = solver.eigenvalues()[0];
   Eigen::VectorXd column;
   s.apply(solver.eigenvectors().rightCols<1>(), column);
-  mode.residual = (column - mode.value * solver.eigenvectors().rightCols<1>()).stableNorm();
+  column -= mode.value * solver.eigenvectors().rightCols<1>();
+  mode.residual = column.stableNorm();
   return mode;
 }
 
@@ -62,8 +63,10 @@ void set_mode(const LinearOperator& s, std::complex<double> value, const Eigen::
   Eigen::VectorXd real, imaginary;
   s.apply(v.real(), real);
   s.apply(v.imag(), imaginary);
+  real -= (value * v).real();
+  imaginary -= (value * v).imag();
   mode.value = std::abs(value);
-  mode.residual = std::hypot((real - (value * v).real()).norm(), (imaginary - (value * v).imag()).norm());
+  mode.residual = std::hypot(real.stableNorm(), imaginary.stableNorm());
 }
 
 // Of a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the least

@@ -106,6 +106,11 @@ std::vector<double> whole_line() {
   return grid;
 }
 
+std::array<RationalFunction, 3> jury_conditions(const SymbolicAmplification& a) {
+  const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
+  return {one - determinant, one - trace + determinant, one + trace + determinant};
+}
+
 }  // namespace
 
 double between(double a, double b) {
@@ -119,10 +124,8 @@ double cosine_point(double left, double right, double angle) {
   return left + (right - left) * 0.5 * (1 - std::cos(angle));
 }
 
-StabilityRegion::StabilityRegion(std::string_view method) : amplification_(symbolic_amplification(method)) {
-  const auto& a = amplification_;
-  const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
-  jury_ = {one - determinant, one - trace + determinant, one + trace + determinant};
+StabilityRegion::StabilityRegion(std::string_view method)
+    : amplification_(symbolic_amplification(method)), jury_(jury_conditions(amplification_)) {
   all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
   constants_ = find_constants();
 }

@@ -5,9 +5,9 @@
 
 namespace springstab {
 
-SpringChain::SpringChain(std::vector<double> mass, const std::vector<double>& stiffness,
+SpringChain::SpringChain(const std::vector<double>& mass, const std::vector<double>& stiffness,
                          RayleighDamping damping)
-    : mass_(Eigen::Map<Vector>(mass.data(), static_cast<Eigen::Index>(mass.size()))),
+    : mass_(Eigen::Map<const Vector>(mass.data(), static_cast<Eigen::Index>(mass.size()))),
       inverse_mass_(mass_.cwiseInverse()),
       stiffness_(Eigen::Map<const Vector>(stiffness.data(), static_cast<Eigen::Index>(stiffness.size()))),
       damping_(damping),

@@ -16,7 +16,7 @@ class SpringChain final : public LinearSystem {
  public:
   /// n masses [kg] and n + 1 springs [N/m], the first and the last of them to a wall. Throws
   /// std::invalid_argument for other numbers of them, masses that are not positive and negative springs.
-  SpringChain(std::vector<double> mass, const std::vector<double>& stiffness, RayleighDamping damping);
+  SpringChain(const std::vector<double>& mass, const std::vector<double>& stiffness, RayleighDamping damping);
 
   const RayleighDamping& damping() const { return damping_; }
   void set_damping(const RayleighDamping& damping);

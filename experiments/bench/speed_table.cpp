@@ -48,7 +48,7 @@ void report(benchmark::State& state, double value, double wanted) {
 }
 
 // The mean step of the first half second of the drape, conjugate gradients to 1e-6 [ms].
-void implicit_step(benchmark::State& state, Model model, SolverKind solver) {
+void implicit_step(benchmark::State& state, const Model& model, SolverKind solver) {
   Subject subject = load(model);
   Scene& scene = *subject.scene();
   scene.solver().kind = solver;
@@ -67,7 +67,7 @@ void implicit_step(benchmark::State& state, Model model, SolverKind solver) {
 }
 
 // A step of symplectic Euler: one force with its damping, and the state advanced [ms].
-void force_step(benchmark::State& state, Model model) {
+void force_step(benchmark::State& state, const Model& model) {
   Subject subject = load(model);
   State<Vector> s = falling(*subject.scene());
   const auto stepper = make_stepper("symplectic-euler");
@@ -80,7 +80,7 @@ void force_step(benchmark::State& state, Model model) {
 // Linearized explicit Euler with its damping fitted to the step, linearized every 0.01 s with the projected
 // Hessian, over the first 0.2 s of the drape, the choice of the step apart [CPU-seconds per simulated
 // second].
-void linearized(benchmark::State& state, Model model) {
+void linearized(benchmark::State& state, const Model& model) {
   constexpr double duration = 0.2;  // [s]
   double least = std::numeric_limits<double>::infinity(), h = 0;
   long rollbacks = 0;
@@ -107,7 +107,7 @@ void linearized(benchmark::State& state, Model model) {
 }
 
 // An assembly of K, in products with it.
-void assembly(benchmark::State& state, Model model) {
+void assembly(benchmark::State& state, const Model& model) {
   Subject subject = load(model);
   const State<Vector> s = falling(*subject.scene());
   const BlockSparseMatrix& k = subject.scene()->linearized(s.x, s.v).stiffness();

@@ -364,6 +364,10 @@ BOOST_AUTO_TEST_CASE(a_product_with_the_stiffness_needs_no_matrix) {
     model.altitude_springs().add_stiffness_times(model.field(x), u.data(), -0.7, out.data());
     check_equal(out, -0.7 * model.stiffness(x) * u, 1e-12);
     BOOST_TEST(out.norm() > 10);
+    Vector force = Vector::Zero(u.size()), damped = force;
+    model.altitude_springs().add_force(model.field(x), force.data());
+    model.altitude_springs().add_damped_force(model.field(x), u.data(), 0.7, damped.data());
+    check_equal(damped, force + out, 1e-12);
   });
 }
 

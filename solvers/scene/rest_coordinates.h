@@ -1,8 +1,7 @@
 // Where the triangles of a mesh lie in the cloth's own coordinates (u, v), in metres:
 // - on a mesh that lies in a plane (no vertex farther from it than 1e-9 of the distance of the farthest
-// vertex
-//   from their mean), u along that of the world's axes that has the longest projection to the plane (the
-//   first of equal ones), projected; v in the plane at a right angle to it;
+//   vertex from their mean), u along that of the world's axes that has the longest projection to the plane
+//   (the first of equal ones), projected; v in the plane at a right angle to it;
 // - else by the texture coordinates, if every corner has them and they give every triangle an area;
 // - else as the triangle is, with u along the projection of the x axis to its plane, or of the z axis where
 //   that of x is shorter than 1/1000.

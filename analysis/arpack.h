@@ -50,10 +50,11 @@ struct Eigenvalues {
 };
 
 /// The `count` algebraically largest eigenvalues; a multiple one may be found fewer times than it is there,
-/// and smaller ones then follow. Needs count < size; solve smaller problems densely. Throws
-/// std::invalid_argument for impossible sizes or a non-finite product, std::logic_error when called from
-/// within a product, std::runtime_error for any other failure that ARPACK reports. One solve runs at a time:
-/// ARPACK keeps its state in static variables.
+/// and smaller ones then follow. The eigenvalue 0 may be missed, as ARPACK multiplies its start vector by the
+/// operator: shift an operator whose largest may be 0. Needs count < size; solve smaller problems densely.
+/// Throws std::invalid_argument for impossible sizes or a non-finite product, std::logic_error when called
+/// from within a product, std::runtime_error for any other failure that ARPACK reports. One solve runs at a
+/// time: ARPACK keeps its state in static variables.
 SymmetricEigenpairs largest_eigenpairs(const LinearOperator& a, Eigen::Index count,
                                        const ArpackOptions& options = {});
 

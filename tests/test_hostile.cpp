@@ -39,10 +39,11 @@ std::vector<std::string> names(const fs::path& folder) {
 }
 
 #ifdef SPRINGSTAB_INSTRUMENTED
-const std::string in_little_memory;
+constexpr bool limits_memory = false;
 #else
-const std::string in_little_memory = "ulimit -v 400000; ";  // [kB]
+constexpr bool limits_memory = true;
 #endif
+const std::string in_little_memory = limits_memory ? "ulimit -v 400000; " : "";  // [kB]
 
 }  // namespace
 
@@ -100,7 +101,8 @@ BOOST_AUTO_TEST_CASE(what_is_no_text_is_refused_at_once_and_in_little_memory) {
       {"pins.json", "pins.json:1: pinned particle 19999999 does not exist"},
   };
   for (const auto& [input, word] : cases)
-    check_refused(shell(in_little_memory + "\"$springstab\" limits " + input), word);
+    if (limits_memory || word != "not enough memory")
+      check_refused(shell(in_little_memory + "\"$springstab\" limits " + input), word);
 
   file("secret.obj", cloth);
   fs::permissions(folder() / "secret.obj", fs::perms::none);

@@ -168,7 +168,7 @@ const std::optional<std::vector<std::complex<double>>>& GeneralDamping::own_spec
     for (const Stiffening& stiffening : stiffenings()) {
       StructuralMatrices stiffer = s_;
       stiffer.stiffness *= stiffening.factor;
-      stiffer.damping += stiffening.added_damping * s_.stiffness;
+      if (stiffening.added_damping > 0) stiffer.damping += stiffening.added_damping * s_.stiffness;
       spectra_.push_back(generator_spectrum(stiffer));
       if (!spectra_.back()) break;
     }

@@ -670,8 +670,8 @@ BOOST_AUTO_TEST_CASE(discs_that_end_at_k0_prove_nothing_there) {
 }
 
 // K = [[a, -1, -ε ...], [-1, a, -ε ...], ..., 4ε on the diagonal]: adding its ε to 1 + a leaves 1 + a, so
-// that the first rows seem to be dominated by a > 1. But x = (1, 1, ½, ½, ...) has xᵀKx = 2 (a - 1) - n ε <
-// 0.
+// that the first rows seem to be dominated by a > 1. But with x = (1, 1, ½, ½, ...)
+// xᵀKx = 2 (a - 1) - n ε < 0.
 BOOST_AUTO_TEST_CASE(small_entries_that_a_sum_loses_are_counted) {
   const int n = 500;
   const double small = 0.75 * eps, a = 1 + 150 * eps;

@@ -39,7 +39,7 @@ double area(const TriangleUv& uv);
 enum class RestShape { plane, texture, faces };
 
 /// A map strains a triangle when the mesh has a length in it that is more than this many times that in the
-/// map, or less than one part of it. No fabric is cut like that: it tears at some ten percent, and maps that
+/// map, or that many times less. No fabric is cut like that: it tears at some ten percent, and maps that
 /// lay a curved surface flat are off by less (1.24 at most on the published cloth that the tests read). At 2,
 /// k0 has grown by 4, which no usual safety factor covers; and a length pressed to a half gives K the
 /// transverse stiffness κ (1 - 1/½) = -κ, the cloth's own. Mirrored triangles are not strained: the energies

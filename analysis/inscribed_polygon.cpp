@@ -152,7 +152,7 @@ PolygonFit InscribedPolygons::fit(const Chain& chain, const std::vector<ModePoin
     corners.insert(corners.begin() + static_cast<long>(i) + 1, (corners[i] + corners[i + 1]) / 2);
   }
   const double best = limit(corners).first;
-  for (std::size_t i = corners.size() - 2; i > 0 && i < corners.size(); --i) {
+  for (std::size_t i = corners.size() - 2; i > 0 && corners.size() + first > 3; --i) {  // with the origin
     std::vector<std::size_t> fewer;
     for (std::size_t j = 0; j < corners.size(); ++j)
       if (j != i) fewer.push_back(corners[j]);

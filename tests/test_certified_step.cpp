@@ -9,6 +9,8 @@
 #include <complex>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "analysis/general_damping.h"
 #include "analysis/generator_spectrum.h"
@@ -32,6 +34,11 @@ const double infinity = std::numeric_limits<double>::infinity();
 const HalfPlane& symplectic_condition() {
   static const HalfPlane condition = stability_region("symplectic-euler").exact_condition().value();
   return condition;
+}
+
+SparseMatrix diagonal(const std::vector<double>& d) {
+  const Eigen::Map<const Eigen::VectorXd> entries(d.data(), static_cast<Eigen::Index>(d.size()));
+  return SparseMatrix(entries.asDiagonal());
 }
 
 Eigen::MatrixXd mass_scaled_dense(const SparseMatrix& a, const StructuralMatrices& s) {
@@ -139,6 +146,110 @@ BOOST_AUTO_TEST_CASE(symplectic_eulers_limit_is_the_dense_truth) {
       BOOST_TEST(largest_modulus(transition_matrix(s, "symplectic-euler", (1 + 1e-3) * h)) > 1 + 1e-5);
     }
   BOOST_TEST(damped > 100);  // the damping mattered
+}
+
+// However little ARPACK may do: what does not converge is no step, what converges is the truth. The largest
+// eigenvalues of a chain lie close.
+BOOST_AUTO_TEST_CASE(unconverged_eigenvalues_never_become_a_step) {
+  RandomNets random(20);
+  SpringNet chain;
+  for (int i = 0; i <= 60; ++i) {
+    chain.rest.emplace_back(i, 0, 0);
+    chain.mass.push_back(1);
+    if (i > 0) chain.springs.push_back({i - 1, i, 1, random.uniform(0.1, 0.2), 0.5});
+  }
+  const StructuralMatrices s = matrices(chain);
+  BOOST_TEST(s.size() > dense_limit);
+  const DampingModel damping{DampingModel::Kind::general, 0, 0, true};
+  const StiffestMode k0 = stiffest_mode(s);
+  const double symplectic = symplectic_truth(s), rk4 = dense_truth(s, "rk4");
+  int none = 0, some = 0;
+  for (const Eigen::Index basis : {3, 6, 12})
+    for (const int restarts : {1, 2, 3, 5, 8, 13, 21})
+      BOOST_TEST_CONTEXT(basis << " vectors, " << restarts << " restarts") {
+        const ArpackOptions options{.basis_size = basis, .max_restarts = restarts};
+        const StiffestMode mode = stiffest_mode(s, options);
+        if (mode.converged) BOOST_TEST(mode.value == k0.value, tolerance(1e-9));
+        GeneralDamping of_that_mode(s, mode, damping, 1.5, true, options);
+        if (!mode.converged) BOOST_TEST((of_that_mode.limits("rk4").status == LimitStatus::unknown));
+
+        const std::optional<double> h = exact_limit(NumericalRange(s, options), symplectic_condition());
+        if (h) BOOST_TEST(*h == symplectic, tolerance(1e-6));
+        const std::optional<double> proved = proved_limit(s, symplectic_condition(), options);
+        BOOST_TEST(proved.value_or(0) <= symplectic);
+        GeneralDamping general(s, k0, damping, 1.5, true, options);
+        const MethodLimits exact = general.limits("symplectic-euler"), polygon = general.limits("rk4");
+        BOOST_TEST((exact.h_max.has_value() || !exact.h_certified));
+        BOOST_TEST(exact.h_certified.value_or(0) <= symplectic);
+        BOOST_TEST(exact.recommended.value_or(0) < symplectic);
+        BOOST_TEST(polygon.h_certified.value_or(0) <= rk4);
+        BOOST_TEST(polygon.recommended.value_or(0) < rk4);
+        ++(h ? some : none);
+      }
+  BOOST_TEST_MESSAGE("not converged: " << none << ", converged: " << some);
+  BOOST_TEST((none > 0 && some > 0));
+}
+
+// K and D of diagonal matrices are proved by their diagonals alone, whatever their size.
+BOOST_AUTO_TEST_CASE(too_many_unknowns_to_factorize_is_the_reason_given) {
+  const Eigen::Index n = DefinitenessProof::factorization_limit + 1;
+  std::vector<double> k(n, 1), d(n, 1);
+  k[0] = 100, d[1] = 10;
+  const StructuralMatrices s = prepare(diagonal(k), {}, diagonal(d));
+  const StiffestMode k0 = stiffest_mode(s);
+  BOOST_TEST(k0.value == 100, tolerance(1e-9));
+  BOOST_TEST((k0.bound_kind == BoundKind::gershgorin));
+  GeneralDamping general(s, k0, {DampingModel::Kind::general, 0, 0, true}, 1.5, true);
+  for (const std::string_view method : {"symplectic-euler", "rk4"}) BOOST_TEST_CONTEXT(method) {
+      const StabilityRegion& region = stability_region(method);
+      const double truth = std::min(region.critical_step(100, 1), region.critical_step(1, 10));
+      const double certified = general.limits(method).h_certified.value();
+      BOOST_TEST(certified <= truth);
+      BOOST_TEST(certified >= 0.99 * truth);
+    }
+  // An edge through the origin holds but for rigid motions, which a factorization would have to find.
+  BOOST_TEST(!general.limits("explicit-euler").h_certified);
+  BOOST_TEST(general.limits("explicit-euler").unproved ==
+             "there are too many unknowns to factorize a matrix");
+  BOOST_TEST(!general.growth());
+  BOOST_TEST(!generator_spectrum(s));
+  BOOST_TEST(!damped_modes(s));
+}
+
+// Rotors of many unknowns: eigenvalues alone could decide, and they are not computed.
+BOOST_AUTO_TEST_CASE(many_unknowns_that_are_not_symmetric_have_no_limit) {
+  const Eigen::Index n = generator_limit + 1;
+  SparseMatrix k(n, n), d(n, n);
+  k.setIdentity();
+  k.coeffRef(0, 0) = 9;
+  d.insert(0, 1) = 1;
+  d.insert(1, 0) = -1;
+  const StructuralMatrices s = prepare_nonsymmetric(k, {}, d);
+  const StiffestMode k0 = stiffest_mode(s);
+  BOOST_TEST(k0.value == 9, tolerance(1e-9));
+  GeneralDamping general(s, k0, {DampingModel::Kind::general, 0, 0, false}, 1.5, true);
+  for (const MethodInfo& method : all_methods()) {
+    const MethodLimits limits = general.limits(method.name);
+    BOOST_TEST((limits.status == LimitStatus::unknown && !limits.h_max && !limits.h_certified));
+    BOOST_TEST(limits.unproved == "K or D is not symmetric");
+  }
+  BOOST_TEST(!general.growth());
+}
+
+// Without springs the modes are first-order decays, d alone: a step is stable up to the end of the X axis.
+BOOST_AUTO_TEST_CASE(dampers_alone_limit_the_step) {
+  const StructuralMatrices s = prepare(SparseMatrix(3, 3), {}, diagonal({1, 2, 4}));
+  const StiffestMode k0 = stiffest_mode(s);
+  BOOST_TEST((k0.converged && k0.value == 0));
+  GeneralDamping general(s, k0, {DampingModel::Kind::general, 0, 0, true}, 1.5, true);
+  for (const std::string_view method : {"symplectic-euler", "explicit-euler", "rk2", "rk4"})
+    BOOST_TEST_CONTEXT(method) {
+      const MethodLimits limits = general.limits(method);
+      const double truth = stability_region(method).critical_step(0, 4);
+      BOOST_TEST(limits.h_certified.value() <= truth);
+      BOOST_TEST(limits.h_certified.value() >= 0.99 * truth);
+      if (limits.h_max) BOOST_TEST(*limits.h_max == truth, tolerance(1e-9));
+    }
 }
 
 BOOST_AUTO_TEST_CASE(large_nets_have_the_limit_of_small_ones) {
@@ -462,6 +573,30 @@ BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {
   BOOST_TEST(tried > 200);
 }
 
+BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_it_cannot_see) {
+  RandomNets random(17);
+  const StructuralMatrices s = matrices(random.net(true), 0.5);
+  const double h = critical_step("rk4", generator_spectrum(s).value()).value();
+  const LyapunovSteps steps(s);
+  BOOST_TEST(steps.proves("rk4", 0.9 * h));
+  BOOST_TEST(!steps.proves("implicit-euler", 0.9 * h));  // the size of its step is not bounded
+  BOOST_TEST(steps.certified("rk4", 0, h).value() < h);
+  BOOST_TEST(!steps.certified("rk4", h, h));         // nothing lies above what is known
+  BOOST_TEST(!steps.certified("rk4", 0, 1000 * h));  // nor anything stable near that
+
+  StructuralMatrices consistent = s, undamped = s;
+  consistent.mass.coeffRef(0, 1) = consistent.mass.coeffRef(1, 0) = 0.1 * s.mass.coeff(0, 0);
+  undamped.damping = {};
+  const StructuralMatrices many = matrices(make_net(Grid{8, 9, 0.1}, {.damping = {0.05, 0.02, 0.01}}));
+  BOOST_TEST(many.size() > LyapunovSteps::unknowns_limit);
+  for (const StructuralMatrices* other : {&std::as_const(consistent), &std::as_const(undamped), &many})
+    BOOST_TEST(!LyapunovSteps(*other).proves("rk4", 1e-3 * h));
+
+  // A motion that dampers alone resist has no energy of its own to fall.
+  const StructuralMatrices soft = prepare(diagonal({1, 0}), {}, diagonal({0, 1}));
+  BOOST_TEST(!LyapunovSteps(soft).proves("rk4", 0.1));
+}
+
 // Springs alone hold a stretched flat net sideways; what D has there is rounding, and allows no step.
 BOOST_AUTO_TEST_CASE(damping_of_roundings_size_allows_no_step) {
   SpringNet net = make_net(Grid{4, 5, 0.1}, {.damping = {0.05, 0.02, 0.01}});
@@ -507,6 +642,57 @@ BOOST_AUTO_TEST_CASE(modes_near_a_shift_are_those_of_the_whole_spectrum) {
       }
     }
   BOOST_TEST(found >= 40);
+}
+
+BOOST_AUTO_TEST_CASE(modes_near_a_shift_need_no_damping_and_no_luck) {
+  const StructuralMatrices s = prepare(diagonal({1, 4, 9, 16, 25, 36, 49, 64, 81, 100}));
+  const auto modes = modes_near(s, {0, 4.1}, 4);
+  BOOST_TEST(modes.size() >= 2);
+  for (const std::complex<double> mu : modes) {
+    BOOST_TEST(std::abs(mu.real()) <= 1e-8);
+    BOOST_TEST(std::abs(mu.imag() - std::round(mu.imag())) <= 1e-8);
+    BOOST_TEST(std::abs(std::abs(mu.imag()) - 4) <= 2);
+  }
+  BOOST_TEST(modes_near(s, {0, 4}, 4).empty());  // an eigenvalue itself: the shifted matrix is singular
+}
+
+// Each solves its own equation of one unknown, and the net's rigid motions are not among them.
+BOOST_AUTO_TEST_CASE(damped_modes_solve_what_they_see_of_the_matrices) {
+  RandomNets random(18);
+  int rigid = 0;
+  for (int i = 0; i < 20; ++i) BOOST_TEST_CONTEXT("net " << i) {
+      const StructuralMatrices s = matrices(random.net(i % 2 == 0));
+      const std::vector<DampedMode> modes = damped_modes(s).value();
+      const double rate = std::sqrt(stiffest_mode(s).value);
+      rigid += modes.size() < 2 * static_cast<std::size_t>(s.size());
+      for (const DampedMode& mode : modes) {
+        BOOST_TEST(std::abs(mode.mu * mode.mu + mode.d * mode.mu + mode.k) <= 1e-6 * rate * rate);
+        BOOST_TEST(std::abs(mode.mu) > 1e-7 * rate);
+      }
+    }
+  BOOST_TEST(rigid > 5);
+}
+
+// Against steps tried one after the other.
+BOOST_AUTO_TEST_CASE(a_half_plane_is_left_where_its_inequality_fails) {
+  RandomNets random(19);
+  for (int i = 0; i < 2000; ++i) {
+    const auto any = [&] { return random.uniform(0, 1) < 0.3 ? 0 : random.uniform(-1, 1); };
+    const HalfPlane edge{any(), any(), std::abs(any())};
+    const ModePoint p{std::abs(any()), std::abs(any())};
+    const double h = first_exit(edge, p);
+    const auto outside = [&](double step) {
+      return edge.x * step * p.d + edge.y * step * step * p.k - edge.bound;
+    };
+    BOOST_TEST_CONTEXT(edge.x << ' ' << edge.y << ' ' << edge.bound << ", d " << p.d << ", k " << p.k) {
+      BOOST_TEST(h >= 0);
+      for (double step = 1e-3; step < 1e3; step *= 1.5) {
+        if (step < h) BOOST_TEST(outside(step) <= 1e-9);
+        if (h == 0 && step == 1e-3) BOOST_TEST(outside(step * 1e-6) > 0);
+      }
+      if (h > 0 && h < 1e6) BOOST_TEST(outside(h * (1 + 1e-6)) > -1e-12 * (1 + h * h));
+    }
+  }
 }
 
 // Above the size of dense eigenvalues the truth lies between what is proved and what is estimated.

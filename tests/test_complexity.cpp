@@ -52,6 +52,8 @@ BOOST_AUTO_TEST_CASE(a_power_law_through_nothing_is_refused) {
        {std::vector<double>{1, 2}, {1, 0, 2}, {1, -1, 2}, {1, std::nan(""), 2}, {1, INFINITY, 2}})
     BOOST_CHECK_THROW(fit_power_law(x, y), std::invalid_argument);
   BOOST_CHECK_THROW(fit_power_law(std::vector<double>{2, 2, 2}, x), std::invalid_argument);
+  BOOST_CHECK_THROW(fit_power_law(std::vector<double>{1, 2}, std::vector<double>{1, 2}),
+                    std::invalid_argument);
 }
 
 namespace {

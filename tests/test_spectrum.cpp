@@ -526,6 +526,18 @@ BOOST_AUTO_TEST_CASE(impossible_numbers_of_eigenvalues_are_refused) {
   BOOST_TEST(dominant_eigenvalues(product_with(a), 4).values.size() >= 4);
 }
 
+BOOST_AUTO_TEST_CASE(impossible_operators_and_start_vectors_are_refused) {
+  BOOST_CHECK_THROW(start_vector(0, {}, 1), std::invalid_argument);
+  for (const Vector& start :
+       {Vector(Vector::Ones(5)), Vector(Vector::Zero(6)), Vector(Vector::Constant(6, nan_value))})
+    BOOST_CHECK_THROW(start_vector(6, start, 1), std::invalid_argument);
+  const LinearOperator vast{3'000'000'000, [](const Vector& in, Vector& out) { out = in; }};
+  BOOST_CHECK_THROW(largest_eigenpairs(vast, 1), std::invalid_argument);
+  const LinearOperator shorter{6, [](const Vector& in, Vector& out) { out = in.head(5); }};
+  BOOST_CHECK_THROW(largest_eigenpairs(shorter, 1), std::invalid_argument);
+  BOOST_CHECK_THROW(dominant_eigenvalues(shorter, 1), std::invalid_argument);
+}
+
 BOOST_AUTO_TEST_CASE(complex_eigenvalues_come_in_pairs_of_their_modulus) {
   // Blocks r (cos, -sin; sin, cos): eigenvalues r exp(±iφ).
   std::vector<Eigen::Triplet<double>> entries;

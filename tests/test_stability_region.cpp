@@ -643,8 +643,15 @@ BOOST_AUTO_TEST_CASE(bad_arguments_are_refused) {
     BOOST_CHECK_THROW(region.boundary(w), std::invalid_argument);
     BOOST_CHECK_THROW(region.pieces(w), std::invalid_argument);
   }
-  for (const auto& [k, d] : {std::pair{-1.0, 0.0}, {1.0, -1.0}, {double{NAN}, 1.0}, {1.0, inf}})
+  for (const auto& [k, d] : {std::pair{-1.0, 0.0}, {1.0, -1.0}, {double{NAN}, 1.0}, {inf, 1.0}, {1.0, inf}})
     BOOST_CHECK_THROW(region.critical_step(k, d), std::invalid_argument);
+  const std::vector<double> two{1, 2}, three{1, 2, 3};
+  std::vector<double> rho(2);
+  std::vector<CellFate> fate(2);
+  BOOST_CHECK_THROW(spectral_radius("rk2", two, three, rho), std::invalid_argument);
+  BOOST_CHECK_THROW(spectral_radius("rk2", three, three, rho), std::invalid_argument);
+  BOOST_CHECK_THROW(simulate_cells("rk2", two, three, 1, 2, fate), std::invalid_argument);
+  BOOST_CHECK_THROW(simulate_cells("rk2", three, three, 1, 2, fate), std::invalid_argument);
 }
 
 BOOST_AUTO_TEST_CASE(real_roots_of_polynomials) {

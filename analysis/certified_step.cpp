@@ -43,7 +43,7 @@ const std::vector<ModePoint>& CertifiedSteps::outline() {
   if (!outline_.empty()) return outline_;
   const auto stiffest = range_.farthest(0, 1, loose), most_damped = range_.farthest(1, 0, loose);
   if (!stiffest || !most_damped) return outline_;
-  outline_ = {*stiffest, *most_damped};
+  outline_ = {{stiffest->d, stiffest->k}, {most_damped->d, most_damped->k}};
   if (!(stiffest->k > 0 && most_damped->d > 0)) return outline_;
   for (const double angle : {0.125, 0.25, 0.375})
     if (const auto p = range_.farthest(std::sin(std::numbers::pi * angle) / most_damped->d,

@@ -40,7 +40,7 @@ SymmetricEigenpairs largest_eigenpair(const LinearOperator& a, const ArpackOptio
   ArpackOptions first = options;
   first.tolerance = std::max(options.tolerance, rough);
   first.basis_size = rough_basis;
-  const SymmetricEigenpairs found = largest_eigenpairs(a, 1, first);
+  SymmetricEigenpairs found = largest_eigenpairs(a, 1, first);
   if (found.converged && first.tolerance == options.tolerance) return found;
   const double largest = found.converged ? found.values[0] : 0;
   if (!(largest > 0 && largest >= -a.lowest)) return largest_eigenpairs(a, 1, options);

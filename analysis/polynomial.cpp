@@ -217,7 +217,7 @@ std::optional<BivariatePolynomial> exact_quotient(BivariatePolynomial p, const B
   }
 }
 
-RationalFunction::RationalFunction(BivariatePolynomial p, std::vector<BivariatePolynomial> factors)
+RationalFunction::RationalFunction(const BivariatePolynomial& p, std::vector<BivariatePolynomial> factors)
     : numerator_(p.without_noise()) {
   for (BivariatePolynomial& q : factors) {
     if (auto quotient = exact_quotient(numerator_, q)) {

@@ -81,7 +81,7 @@ class RationalFunction {
   friend RationalFunction operator/(const RationalFunction& f, const RationalFunction& g);
 
  private:
-  RationalFunction(BivariatePolynomial p, std::vector<BivariatePolynomial> factors);
+  RationalFunction(const BivariatePolynomial& p, std::vector<BivariatePolynomial> factors);
 
   BivariatePolynomial numerator_;
   std::vector<BivariatePolynomial> factors_;

@@ -21,7 +21,9 @@ std::optional<Eigen::MatrixXd> step_magnitude(std::string_view method, const Eig
 struct Magnitude {
   Eigen::MatrixXd entries;
 
-  bool allFinite() const { return entries.allFinite(); }
+  bool allFinite() const {  // NOLINT(readability-identifier-naming): is_finite asks Eigen's types for it
+    return entries.allFinite();
+  }
   friend Magnitude operator+(const Magnitude& a, const Magnitude& b) { return {a.entries + b.entries}; }
   friend Magnitude operator-(const Magnitude& a, const Magnitude& b) { return a + b; }
   friend Magnitude operator*(double factor, const Magnitude& a) { return {std::abs(factor) * a.entries}; }

@@ -20,7 +20,7 @@ std::vector<Figure> all_figures() {
 }
 
 std::vector<Figure> chosen_figures(const std::vector<std::string>& names) {
-  const std::vector<Figure> all = all_figures();
+  std::vector<Figure> all = all_figures();
   if (names.empty()) return all;
   std::vector<Figure> chosen;
   for (const std::string& name : names) {

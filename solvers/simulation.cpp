@@ -62,7 +62,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
   std::vector<Stage>& stages = run.stages;
   Checkpoint checkpoint{state, run.steps, run.time};
   stepper.restart(stages.back().plan.steps_per_linearization);
-  if (observe && !observe(run, state)) return run;
+  if (observe && !observe(run, state)) return static_cast<SimulationResult&&>(run);
   const auto gained = [&](double t) {
     return std::isfinite(watch.largest_gain) &&
            watch.gained(system.kinetic_energy(state.v) + system.potential_energy(state.x), t);
@@ -103,7 +103,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
     stages.push_back({run.time, *next});
     stepper.restart(next->steps_per_linearization);
   }
-  return run;
+  return static_cast<SimulationResult&&>(run);
 }
 
 }  // namespace springstab

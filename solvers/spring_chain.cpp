@@ -40,7 +40,7 @@ StructuralMatrices SpringChain::matrices() const {
   }
   SparseMatrix k(n, n);
   k.setFromTriplets(entries.begin(), entries.end());
-  return prepare(std::move(k), SparseMatrix(mass_.asDiagonal()));
+  return prepare(k, SparseMatrix(mass_.asDiagonal()));
 }
 
 // The tensions for displacements u.

@@ -13,6 +13,7 @@ long allocations() { return count; }
 
 // The names are the linker's: __real_f is the f that was there, __wrap_f what callers get. The mangled ones
 // are operator new(size_t), operator new[](size_t) and operator new(size_t, std::align_val_t).
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming)
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_realloc(void* block, std::size_t size);
@@ -41,3 +42,4 @@ void* __wrap__ZnwmSt11align_val_t(std::size_t size, std::size_t alignment) {
   return __real__ZnwmSt11align_val_t(size, alignment);
 }
 }
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)

@@ -489,7 +489,7 @@ BOOST_AUTO_TEST_CASE(a_lyapunov_matrix_proves_what_polygons_do_not) {
     int i = 0;
     const auto any = [&](RandomNets& random) {
       while (true) {
-        const StructuralMatrices s = matrices(random.net(i++ % 2 == 0));
+        StructuralMatrices s = matrices(random.net(i++ % 2 == 0));
         const std::vector<std::complex<double>> modes = generator_spectrum(s).value();
         double decay = infinity;
         for (const std::complex<double> mu : modes) decay = std::min(decay, -mu.real());

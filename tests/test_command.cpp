@@ -98,7 +98,7 @@ BOOST_AUTO_TEST_CASE(undamped_limits_follow_from_k0) {
   const double k0 = report["k0"]["value"];
   BOOST_TEST(report["k0"]["upper_bound"].get<double>() >= k0);
   BOOST_TEST(report["damping"]["kind"] == "none");
-  const Json list = report["methods"];
+  const Json& list = report["methods"];
   BOOST_TEST(close(by_name(list, "rk4")["h_max"], std::sqrt(8 / k0)));
   BOOST_TEST(close(by_name(list, "rk4")["designed"]["h_max"], std::sqrt(8.7623104291285 / k0)));
   BOOST_TEST(close(by_name(list, "symplectic-euler")["h_max"], 2 / std::sqrt(k0)));

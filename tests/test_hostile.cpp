@@ -267,10 +267,10 @@ BOOST_AUTO_TEST_CASE(a_decimal_comma_changes_nothing) {
   for (const std::string& arguments : std::vector<std::string>{
            "limits --stiffness k.mtx --json", "limits --stiffness k.mtx", "limits scene.json --safety 1.25",
            "region rk4 --x 0:2.5 --nx 3 --ny 3 --raster /dev/fd/3 --json 3>&1",
-           "simulate --stiffness k.mtx --method rk4 --step 0.05 --duration 0.5 --output out >/dev/null && "
-           "cat out/*",
-           "simulate scene.json --method rk4 --step 0.0005 --duration 0.005 --output frames >/dev/null && "
-           "cat frames/*"})
+           ("simulate --stiffness k.mtx --method rk4 --step 0.05 --duration 0.5 --output out >/dev/null && "
+            "cat out/*"),
+           ("simulate scene.json --method rk4 --step 0.0005 --duration 0.005 --output frames >/dev/null && "
+            "cat frames/*")})
     BOOST_TEST_CONTEXT(arguments) {
       const Outcome here = (*this)(arguments), there = shell(german + "\"$springstab\" " + arguments);
       BOOST_TEST(here.status == 0);

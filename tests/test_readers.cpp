@@ -144,7 +144,7 @@ BOOST_AUTO_TEST_SUITE(readers)
 BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_refused_by_name_and_reason) {
   const TemporaryPath missing, directory, empty;
   std::filesystem::create_directory(directory.name());
-  std::ofstream{empty.name()};
+  std::ofstream(empty.name()).close();
   const auto refused = [](const std::string& path, const std::string& reason) {
     return [=](const InputError& error) {
       const std::string message = error.what();

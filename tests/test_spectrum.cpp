@@ -557,9 +557,9 @@ BOOST_AUTO_TEST_CASE(complex_eigenvalues_come_in_pairs_of_their_modulus) {
     BOOST_REQUIRE(found.converged);
     BOOST_REQUIRE_EQUAL(found.values.size(), 4U);
     for (int i = 0; i < 4; ++i) {
-      BOOST_TEST(std::abs(found.values[i]) == scale * (2 - (i / 2) / 40.0), tolerance(1e-10));
-      BOOST_TEST(found.values[i].real() == scale * (2 - (i / 2) / 40.0) * std::cos(0.4 + i / 2),
-                 tolerance(1e-9));
+      const int pair = i / 2;
+      BOOST_TEST(std::abs(found.values[i]) == scale * (2 - pair / 40.0), tolerance(1e-10));
+      BOOST_TEST(found.values[i].real() == scale * (2 - pair / 40.0) * std::cos(0.4 + pair), tolerance(1e-9));
     }
     BOOST_TEST(found.values[0].imag() == -found.values[1].imag(), tolerance(1e-12));
   }

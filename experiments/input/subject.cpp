@@ -150,10 +150,10 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   if (options.spacing || !options.material.empty() || !options.pin.empty())
     throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
   const auto read = [](const std::string& path) { return path.empty() ? SparseMatrix() : read_matrix(path); };
-  SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
+  const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
   matrices_ = naming(options.stiffness, [&] {
     const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
-    return std::make_unique<MatrixSystem>(make(std::move(k), std::move(m), std::move(d)));
+    return std::make_unique<MatrixSystem>(make(k, m, d));
   });
 }
 
@@ -229,7 +229,7 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, con
 }
 
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
-  const std::vector<Eigen::Vector3d> particles = scene_->positions(x);
+  std::vector<Eigen::Vector3d> particles = scene_->positions(x);
   if (!mesh_file_) return particles;
   std::vector<Eigen::Vector3d> all;
   for (std::size_t v = 0; v < mesh_file_->vertices.size(); ++v) {

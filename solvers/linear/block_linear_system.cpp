@@ -61,7 +61,7 @@ bool BlockLinearSystem::invert_diagonal_blocks(double mass_factor, double stiffn
     h.diagonal().array() += mass_factor * mass_[i];
     const Eigen::LLT<Block> factor(h);
     if (factor.info() != Eigen::Success) return false;
-    Eigen::Map<Block> inverse(&inverse_blocks_[9 * i]);
+    Eigen::Map<Block> inverse(&inverse_blocks_[9 * static_cast<long>(i)]);
     inverse = factor.solve(Block::Identity());
   }
   return true;

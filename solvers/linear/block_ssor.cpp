@@ -53,7 +53,8 @@ bool BlockSsor::set(double m, const std::vector<double>& mass, double k, const B
     const Eigen::LLT<Block> cholesky(diagonal / relaxation);
     if (cholesky.info() != Eigen::Success) return false;
     const Block inverse = cholesky.matrixL().solve(Block::Identity());
-    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(&factor_[12 * i]) << inverse.transpose(),
+    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(&factor_[12 * static_cast<long>(i)])
+        << inverse.transpose(),
         Eigen::Vector3d::Zero();
 
     // L̂_ij = C_i⁻¹ H_ij C_j⁻ᵀ, row by row; what spills over the end of a row is overwritten by the next.

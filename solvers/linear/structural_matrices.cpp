@@ -120,17 +120,19 @@ void condense(StructuralMatrices& s) {
 }
 
 // Of K and D only symmetric ones are accepted, unless they may be `any`.
-StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping, bool any) {
+StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                           const SparseMatrix& damping, bool any) {
   const Eigen::Index n = stiffness.rows();
   if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
-  if (mass.size() == 0) {
-    mass.resize(n, n);
-    mass.setIdentity();
-  }
   StructuralMatrices s;
-  s.stiffness = checked(std::move(stiffness), "stiffness", n, any ? &s.symmetric : nullptr);
-  s.mass = checked(std::move(mass), "mass", n);
-  if (damping.size() > 0) s.damping = checked(std::move(damping), "damping", n, any ? &s.symmetric : nullptr);
+  s.stiffness = checked(stiffness, "stiffness", n, any ? &s.symmetric : nullptr);
+  if (mass.size() > 0) {
+    s.mass = checked(mass, "mass", n);
+  } else {
+    s.mass.resize(n, n);
+    s.mass.setIdentity();
+  }
+  if (damping.size() > 0) s.damping = checked(damping, "damping", n, any ? &s.symmetric : nullptr);
   for (Eigen::Index i = 0; i < n; ++i)
     if (s.mass.coeff(i, i) < 0) {
       std::ostringstream message;
@@ -153,12 +155,14 @@ bool is_diagonal(const SparseMatrix& a) {
   return true;
 }
 
-StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping) {
-  return prepare(std::move(stiffness), std::move(mass), std::move(damping), false);
+StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                           const SparseMatrix& damping) {
+  return prepare(stiffness, mass, damping, false);
 }
 
-StructuralMatrices prepare_nonsymmetric(SparseMatrix stiffness, SparseMatrix mass, SparseMatrix damping) {
-  return prepare(std::move(stiffness), std::move(mass), std::move(damping), true);
+StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                                        const SparseMatrix& damping) {
+  return prepare(stiffness, mass, damping, true);
 }
 
 }  // namespace springstab

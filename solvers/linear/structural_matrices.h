@@ -21,12 +21,13 @@ struct StructuralMatrices {
 /// of the asymmetry is averaged away) and eliminates unknowns whose row of M is zero: they follow the others,
 /// K ← K_aa - K_ab K_bb⁻¹ K_ba, which needs K_bb positive definite and no damping on them. An empty M stands
 /// for the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
-StructuralMatrices prepare(SparseMatrix stiffness, SparseMatrix mass = {}, SparseMatrix damping = {});
+StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
+                           const SparseMatrix& damping = {});
 
 /// The same for any K and D, as of follower forces and rotors; where one is not symmetric it stays so, and
 /// every unknown needs mass.
-StructuralMatrices prepare_nonsymmetric(SparseMatrix stiffness, SparseMatrix mass = {},
-                                        SparseMatrix damping = {});
+StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
+                                        const SparseMatrix& damping = {});
 
 /// Whether nothing is stored off the diagonal.
 bool is_diagonal(const SparseMatrix& a);

@@ -22,6 +22,7 @@ const springstab::test::Reader& chosen_reader() {
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that libFuzzer calls
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const springstab::test::Reader& reader = chosen_reader();
   springstab::test::reads(reader, {reinterpret_cast<const char*>(data), size});

@@ -12,7 +12,7 @@
 namespace springstab {
 namespace {
 
-constexpr double rigid = 1e-6, undamped = 1e-9;  // of √‖K'‖ and of the largest |μ|
+constexpr double rigid = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
 constexpr double accurate = 1e-6;
 
 // A function of the generator commutes with it; symplectic Euler's matrix does not.
@@ -33,13 +33,17 @@ std::optional<Generator> generator_of(const StructuralMatrices& s) {
   if (n > generator_limit) return std::nullopt;
   Generator g;
   g.stiffness = as_dense(scaled_stiffness(s));
-  if (s.symmetric) g.stiffness = symmetric_part(g.stiffness);
+  g.damping = Eigen::MatrixXd::Zero(n, n);
+  if (s.has_damping()) g.damping = as_dense(mass_scaled(s.damping, s.mass));
+  if (s.symmetric) {
+    g.stiffness = symmetric_part(g.stiffness);
+    g.damping = symmetric_part(g.damping);
+  }
   g.rate = std::sqrt(g.stiffness.norm());
+  if (g.rate == 0) g.rate = g.damping.norm();
   if (!(g.rate > 0)) return std::nullopt;
   g.stiffness /= g.rate * g.rate;
-  g.damping = Eigen::MatrixXd::Zero(n, n);
-  if (s.has_damping()) g.damping = as_dense(mass_scaled(s.damping, s.mass)) / g.rate;
-  if (s.symmetric) g.damping = symmetric_part(g.damping);
+  g.damping /= g.rate;
   g.matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
   g.matrix.topRightCorner(n, n).setIdentity();
   g.matrix.bottomLeftCorner(n, n) = -g.stiffness;

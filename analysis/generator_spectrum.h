@@ -15,7 +15,8 @@ namespace springstab {
 inline constexpr Eigen::Index generator_limit = 400;
 
 /// All of the generator's eigenvalues [1/s], computed densely; nothing above `generator_limit` unknowns and
-/// where that did not converge. Those below 1e-6 of √‖K'‖ are left out: rigid motions, but for rounding.
+/// where that did not converge. Those below 1e-6 of √‖K'‖, or of ‖D'‖ where K is zero, are left out: rigid
+/// motions, but for rounding.
 std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s);
 
 /// What an eigenpair (μ, v) sees of the matrices, v*v = 1 in the mass inner product: μ² + dμ + k = 0.

@@ -43,6 +43,14 @@ void print_texture_notes(const MeshFile& file) {
           scale + "; without texture coordinates (vt) faces rest as they lie");
 }
 
+void print_unused_texture_unit(const Subject& subject) {
+  if (!subject.material()) return;
+  const auto* cloth = std::get_if<ClothMaterial>(&*subject.material());
+  const std::optional<MeshFile>& file = subject.mesh_file();
+  if (cloth && cloth->texture_unit && !(file && file->rest_shape == RestShape::texture))
+    say("note", "texture_unit", "is not used: the cloth rests as it lies, not by a texture map");
+}
+
 // Null where there is none, in a plane, and for springs; of one that is not used the line alone.
 Json texture_json(const MeshFile& file) {
   if (!file.texture_map) return nullptr;
@@ -60,6 +68,7 @@ Json texture_json(const MeshFile& file) {
 }  // namespace
 
 void print_mesh_notes(const Subject& subject) {
+  print_unused_texture_unit(subject);
   if (!subject.mesh_file()) return;
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;

@@ -230,6 +230,26 @@ BOOST_FIXTURE_TEST_CASE(a_straining_map_is_one_line_before_the_run, springstab::
   BOOST_TEST(strained.json().at("mesh").at("texture_map").at("strained_triangles") == 4);
 }
 
+BOOST_FIXTURE_TEST_CASE(a_texture_unit_without_a_map_is_one_line, springstab::test::Command) {
+  file("plain.obj", vertices + "f 1 2 4 3\n");
+  file("folded.obj", folded_with(moved));
+  const auto said = [&](const std::string& geometry, const std::string& unit) {
+    file("scene.json", R"({"geometry": {)" + geometry + R"(}, "pins": [0],
+                           "material": {"model": "baraff-witkin")" +
+                           unit + "}}");
+    const springstab::test::Outcome run = (*this)("limits scene.json --method rk4");
+    BOOST_TEST(run.status == 0);
+    return run.err;
+  };
+  const std::string unit = R"(, "texture_unit": 1)", grid = R"("grid": [3, 3], "spacing": 0.1)",
+                    plain = R"("mesh": "plain.obj")", folded = R"("mesh": "folded.obj")";
+  for (const std::string& geometry : {grid, plain}) {
+    BOOST_TEST(said(geometry, unit).starts_with("springstab: note: texture_unit: is not used: "));
+    BOOST_TEST(said(geometry, "") == "");
+  }
+  BOOST_TEST(said(folded, unit) == "");
+}
+
 BOOST_AUTO_TEST_CASE(a_published_cloth_keeps_its_coordinates) {
   if (const auto path = springstab::test::shared_data("meshes/pbd_plane_30x30.obj")) {
     const Mesh mesh = springstab::read_obj(path->string());

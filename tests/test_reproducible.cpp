@@ -88,10 +88,6 @@ BOOST_AUTO_TEST_CASE(regions_do_not_depend_on_threads) {
 
 // Figures are drawn from cells that are really simulated.
 BOOST_AUTO_TEST_CASE(figures_do_not_depend_on_threads) {
-  if (shell("command -v gnuplot").status != 0) {
-    BOOST_TEST_MESSAGE("skipped, for there is no gnuplot");
-    return;
-  }
   const auto drawn = [&](const char* options) {
     Result result = result_of(*this, "figures 2 --quick --json --output out", options);
     for (auto& [name, content] : result.files) content = content_of(folder() / "out" / name);  // pictures too

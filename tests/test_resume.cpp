@@ -96,7 +96,8 @@ struct Undisturbed {
     fs::create_directories(folder);
     const auto start = std::chrono::steady_clock::now();
     const Command command(folder, arguments);
-    BOOST_REQUIRE_EQUAL(command.wait(), 0);
+    const int status = command.wait();
+    BOOST_TEST_CONTEXT(command.err()) { BOOST_REQUIRE_EQUAL(status, 0); }
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report = Json::parse(command.out());
     files = files_in(folder / "out");

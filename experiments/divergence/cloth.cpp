@@ -175,8 +175,6 @@ void append(ClothStudy& study, const std::string& name, const Case& c, const Jso
 ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStudyOptions& options,
                        const std::function<void(double)>& report, Journal& journal) {
   Scene& scene = *subject.scene();
-  if (scene.has_own_damping())
-    throw std::invalid_argument(name + " has damping of its own, expected none: this study sets it");
   const State<Vector> start = subject.initial_state(options.seed);
   const double k0 = stiffest_mode(subject.structure(start), {.seed = options.seed}).value;
   ClothStudy study;

@@ -48,8 +48,8 @@ struct ClothStudyOptions {
 /// Runs the scene under air drag alone, under Rayleigh damping with alpha = 1e-4 s, and under that fitted to
 /// each method's step, by every method that has a limit of at least a tenth of 2/√k0 (shorter ones would
 /// take too long). Linearized methods freeze the projected stiffness. `report` gets the part done. Each
-/// method under one damping is a piece of the journal. Throws std::invalid_argument for a scene with damping
-/// of its own.
+/// method under one damping is a piece of the journal. The scene's material has no
+/// damping (not checked); its Rayleigh damping is set aside.
 ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStudyOptions& options,
                        const std::function<void(double)>& report, Journal& journal = Journal::none());
 

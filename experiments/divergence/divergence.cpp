@@ -86,6 +86,8 @@ Scenes subjects(const DivergenceOptions& options) {
     input.file = file;
     if (!file.ends_with(".json")) input.pin = options.pin;
     Subject subject(input);
+    if (subject.scene()->has_own_damping())
+      throw InputError(file, 0, "has a material with damping, expected none: this study sets the damping");
     print_mesh_notes(subject);
     const std::size_t slash = file.find_last_of('/');
     all.emplace_back(slash == std::string::npos ? file : file.substr(slash + 1), std::move(subject));

@@ -261,8 +261,9 @@ void add_divergence(CLI::App& app, const CommonOptions& common, DivergenceOption
       "alpha = 1e-4 s, and fitted to the step. A scene's own `damping` is set aside, a material with damping "
       "refused.\n"
       "`bounded`: up to this ratio no run of the scene diverged. `k0 grows`: largest k0(t)/k0(0).\n"
-      "`needs F`: the safety factor on k0 that would have given such a step. - where even the shortest step "
-      "that was tried diverged.\n"
+      "`needs F`: the safety factor on k0 that would have given such a step. - where even the shortest one "
+      "tried\n"
+      "diverged.\n"
       "JSON: cells, disagreements, outside_band, plane[], safety[], switching, pendulum.\n\n"
       "example: springstab divergence skirt.obj --pin 0-15 --output results\n"
       "         the same with --resume after Ctrl-C or a crash");

@@ -43,6 +43,7 @@ RunSoFar run_of(const Json& json) {
 CheckpointFile::CheckpointFile(const std::string& folder, const Json& identity, bool resume, bool quiet)
     : identity_(identity), due_(Clock::now() + least_interval) {
   if (folder.empty()) return;
+  lock_.emplace(folder);
   path_ = folder + "/simulate.checkpoint";
   if (!resume) {
     finish();

@@ -21,7 +21,8 @@ struct KeptRun {
 /// replaced whole.
 class CheckpointFile {
  public:
-  /// Nowhere if the folder is empty. Without `resume` a file of an earlier run is removed.
+  /// Nowhere if the folder is empty. Without `resume` a file of an earlier run is removed. Throws InputError
+  /// if another process uses the folder.
   CheckpointFile(const std::string& folder, const Json& identity, bool resume, bool quiet);
 
   /// What is there, if there is anything. Throws InputError for another run's or a damaged one.
@@ -39,6 +40,7 @@ class CheckpointFile {
 
  private:
   using Clock = std::chrono::steady_clock;
+  std::optional<FolderLock> lock_;
   std::string path_;
   Json identity_;
   Clock::time_point due_;

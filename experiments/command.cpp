@@ -337,7 +337,9 @@ int run_command(int argc, const char* const* argv) {
   app.set_version_flag("--version", SPRINGSTAB_VERSION);
   app.add_flag("--json", common.json, "one JSON document on stdout");
   app.add_flag("--quiet", common.quiet, "no progress on stderr");
-  app.add_option("--seed", common.seed, "of everything random")->capture_default_str();
+  app.add_option("--seed", common.seed, "of everything random")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--threads", common.threads, "for the X-Y planes of region, divergence and figures")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "experiments/output.h"
+#include "solvers/io/input_error.h"
 
 namespace springstab {
 namespace {
@@ -32,11 +33,17 @@ void write_vtk(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
   }
 }
 
+}  // namespace
+
 std::string frame_path(const std::string& folder, const std::string& format, int frame) {
   return folder + text("/frame_%05d.%s", frame, format.c_str());
 }
 
-}  // namespace
+void expect_frame(const std::string& folder, const std::string& format, int frame) {
+  const std::string path = frame_path(folder, format, frame);
+  if (!std::filesystem::exists(path))
+    throw InputError(path, 0, "is missing, expected all frames of the run; without --resume it starts anew");
+}
 
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces) {

@@ -12,6 +12,12 @@ namespace springstab {
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces);
 
+/// Throws InputError unless such a file is there.
+void expect_frame(const std::string& folder, const std::string& format, int frame);
+
+/// Where it is.
+std::string frame_path(const std::string& folder, const std::string& format, int frame);
+
 /// Deletes such a file if it is there.
 void remove_frame(const std::string& folder, const std::string& format, int frame);
 

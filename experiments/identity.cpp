@@ -21,23 +21,28 @@ std::string as_utf8(const std::string& text) {
 }
 
 std::string bytes_of(const std::string& path) {
+  if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a file");
   std::ifstream in(path, std::ios::binary);
   std::string all{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw InputError(path, 0, std::string("cannot be read: ") + std::strerror(errno));
   return all;
 }
 
-Json contents_of(const std::string& file) {
+Json contents_of(const std::string& file, bool resume) {
   Json contents{{"name", as_utf8(std::filesystem::path(file).filename().string())}};
-  if (!std::filesystem::is_regular_file(file)) return contents;
+  if (!std::filesystem::is_regular_file(file)) {
+    if (resume)
+      throw InputError(file, 0, "is no regular file, expected one with --resume, to see that it is the same");
+    return contents;
+  }
   contents["hash"] = hash_of(bytes_of(file));
-  if (!file.ends_with(".json")) return contents;
+  if (!is_scene_file(file)) return contents;
   const Geometry geometry = read_scene_file(file).geometry;
-  if (const auto* mesh = std::get_if<std::string>(&geometry)) contents["mesh"] = contents_of(*mesh);
+  if (const auto* mesh = std::get_if<std::string>(&geometry)) contents["mesh"] = contents_of(*mesh, resume);
   return contents;
 }
 
-Json contents_of(const InputOptions& input) {
+Json contents_of(const InputOptions& input, bool resume) {
   Json contents{{"grid", input.grid},
                 {"spacing", number(input.spacing)},
                 {"material", input.material},
@@ -46,7 +51,7 @@ Json contents_of(const InputOptions& input) {
                                                               {"stiffness", input.stiffness},
                                                               {"mass", input.mass},
                                                               {"damping-matrix", input.damping_matrix}};
-  for (const auto& [name, file] : files) contents[name] = file.empty() ? Json() : contents_of(file);
+  for (const auto& [name, file] : files) contents[name] = file.empty() ? Json() : contents_of(file, resume);
   return contents;
 }
 

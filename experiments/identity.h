@@ -20,9 +20,10 @@ std::string as_utf8(const std::string& text);
 std::string bytes_of(const std::string& path);
 
 /// A hash of each file, with that of the mesh which a scene file names, and the input options as given.
-Json contents_of(const InputOptions& input);
-/// Of one scene file, mesh or matrix. A pipe cannot be read again: it counts by its name.
-Json contents_of(const std::string& file);
+/// To `resume`, throws InputError for a pipe, which cannot be read again.
+Json contents_of(const InputOptions& input, bool resume);
+/// Of one scene file, mesh or matrix.
+Json contents_of(const std::string& file, bool resume);
 
 /// What is wrong with --resume alone.
 inline constexpr char needs_output[] = "needs --output, the folder where a run keeps what it has finished";

@@ -1,7 +1,6 @@
 #include "experiments/journal.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -44,11 +43,10 @@ Journal::Journal(const std::string& folder, const Json& identity, bool resume, b
     exit_on_interrupt("nothing was saved (with --output it would have been)");
     return;
   }
+  lock_.emplace(folder);
   path_ = folder + '/' + identity.at("command").get<std::string>() + ".journal";
   file_.descriptor = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_.descriptor < 0) throw failure(path_);
-  if (flock(file_.descriptor, LOCK_EX | LOCK_NB) != 0)
-    throw InputError(path_, 0, "is in use, expected no other run with the same --output");
   if (resume) read(identity);
   if (kept_.empty()) {
     if (ftruncate(file_.descriptor, 0) != 0) throw failure(path_);

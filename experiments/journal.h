@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,8 @@ class Journal {
 
   /// In FOLDER/COMMAND.journal (nowhere if the folder is empty): begins anew, or with `resume` goes on with
   /// what is there, and tells Ctrl-C and, unless `quiet`, the user what that is. Throws InputError for a
-  /// journal of another run or a damaged one, if the file cannot be written or another process has it, and
-  /// for `resume` without a folder.
+  /// journal of another run or a damaged one, if the file cannot be written or another process uses the
+  /// folder, and for `resume` without a folder.
   Journal(const std::string& folder, const Json& identity, bool resume, bool quiet);
 
   /// The next piece. Throws InputError if the journal has one there that is described otherwise, or if it
@@ -40,8 +41,9 @@ class Journal {
   void append(const Json& line);
   void tell_interrupt() const;
 
+  std::optional<FolderLock> lock_;
   std::string path_;
-  struct File {  // closed, and so unlocked, at the end
+  struct File {  // closed at the end
     File() = default;
     File(const File&) = delete;
     File& operator=(const File&) = delete;

@@ -1,6 +1,8 @@
 #include "experiments/output.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -31,6 +33,12 @@ bool is_abandoned(const std::string& name) {
   const char *begin = name.data() + part + part_suffix.size(), *end = name.data() + name.size();
   const auto [stopped, error] = std::from_chars(begin, end, process);
   return error == std::errc() && stopped == end && kill(process, 0) != 0 && errno == ESRCH;
+}
+
+// With the system's reason, if it is known: a stream that failed before has none.
+std::string cannot_be_written() {
+  return std::string("cannot be written") +
+         (errno ? std::string(": ") + std::strerror(errno) : " (a full disk?)");
 }
 
 }  // namespace
@@ -72,7 +80,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   const bool in_place = fs::exists(status) && !fs::is_regular_file(status);
   aside_ = in_place ? target_ : target_ + std::string(part_suffix) + std::to_string(getpid());
   stream_.open(aside_);
-  if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
+  if (!stream_) throw InputError(path, 0, cannot_be_written());
   stream_.imbue(std::locale::classic());
   stream_.precision(17);
 }
@@ -87,7 +95,7 @@ OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
       throw InputError(aside_, 0, "is not what the run had written; without --resume the run starts anew");
   }
   stream_.open(aside_, bytes > 0 ? std::ios::app : std::ios::trunc);
-  if (!stream_) throw InputError(path, 0, std::string("cannot be written: ") + std::strerror(errno));
+  if (!stream_) throw InputError(path, 0, cannot_be_written());
   stream_.imbue(std::locale::classic());
   stream_.precision(17);
 }
@@ -95,8 +103,7 @@ OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
 std::uintmax_t OutputFile::keep() {
   errno = 0;
   stream_.flush();
-  if (!stream_)
-    throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno ? errno : EIO));
+  if (!stream_) throw InputError(path_, 0, cannot_be_written());
   kept_ = true;
   return std::filesystem::file_size(aside_);
 }
@@ -111,8 +118,7 @@ OutputFile::~OutputFile() {
 void OutputFile::commit() {
   errno = 0;
   stream_.close();
-  if (!stream_)
-    throw InputError(path_, 0, std::string("cannot be written: ") + std::strerror(errno ? errno : EIO));
+  if (!stream_) throw InputError(path_, 0, cannot_be_written());
   std::error_code error;
   std::filesystem::rename(aside_, target_, error);
   if (error) throw InputError(path_, 0, "cannot be written: " + error.message());
@@ -126,6 +132,18 @@ void make_folder(const std::string& path) {
     throw InputError(path, 0, "cannot be made a folder" + (error ? ": " + error.message() : std::string()));
   for (const auto& entry : std::filesystem::directory_iterator(path, error))
     if (is_abandoned(entry.path().filename().string())) std::filesystem::remove(entry.path(), error);
+}
+
+FolderLock::FolderLock(const std::string& folder)
+    : descriptor_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  // Where the file system has no locks, there is none.
+  if (descriptor_ < 0 || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  close(descriptor_);
+  throw InputError(folder, 0, "is in use, expected no other run with the same --output");
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 Progress::Progress(std::string label, bool quiet)

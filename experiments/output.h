@@ -56,6 +56,19 @@ class OutputFile {
 /// InputError if it cannot be made.
 void make_folder(const std::string& path);
 
+/// Keeps other processes from writing into the folder, until it is destroyed or the process ends. Throws
+/// InputError if another one does.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 /// A bar on stderr for what takes more than a second, if stderr is a terminal and not `quiet`.
 class Progress {
  public:

@@ -1,6 +1,7 @@
 // `springstab simulate`: runs a scene or a system of matrices with a step that is known to be stable.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 
 #include "analysis/method_limits.h"
@@ -20,6 +21,8 @@
 namespace springstab {
 namespace {
 
+constexpr int most_frames = 10'000'000;
+
 void check(const SimulateOptions& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
     if (!(value > 0 && std::isfinite(value)))
@@ -29,8 +32,13 @@ void check(const SimulateOptions& options) {
   if (options.step) positive("--step", *options.step, " of seconds");
   if (options.max_step) positive("--max-step", *options.max_step, " of seconds");
   positive("--relinearize", options.relinearize, " of seconds");
-  positive("--cg-tolerance", options.cg_tolerance, "");
-  if (options.frames < 1) throw InputError("--frames", 0, text("is %d, expected at least 1", options.frames));
+  if (options.step && options.max_step && *options.step > *options.max_step)
+    throw InputError("--step", 0, text("is %g s, expected at most --max-step", *options.step));
+  if (!(options.cg_tolerance > 0 && options.cg_tolerance < 1))
+    throw InputError("--cg-tolerance", 0,
+                     text("is %g, expected more than 0 and less than 1", options.cg_tolerance));
+  if (options.frames < 1 || options.frames > most_frames)
+    throw InputError("--frames", 0, text("is %d, expected 1 to %d", options.frames, most_frames));
   if (options.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
 }
 
@@ -51,7 +59,7 @@ Json identity(const CommonOptions& common, const SimulateOptions& o) {
                       {"format", o.format},
                       {"frames", o.frames},
                       {"seed", common.seed}},
-                     contents_of(o.input));
+                     contents_of(o.input, o.resume));
 }
 
 // Writes evenly spaced frames of a scene, or rows of a CSV file for matrices.
@@ -64,6 +72,8 @@ class Recorder {
       for (const Json& frame : kept.at("frames")) frames_.push_back({frame[0], frame[1]});
       due_ = kept.at("due");
       most_ = kept.at("most");
+      for (int frame = 0; subject.scene() && frame < written(); ++frame)
+        expect_frame(options.output, options.format, frame);
     }
     if (options.output.empty() || subject.scene()) return;
     csv_.emplace(options.output + "/trajectory.csv",
@@ -108,6 +118,13 @@ class Recorder {
     if (csv_) csv_->commit();
     for (int frame = written(); frame < most_; ++frame)  // of what was undone and not reached again
       remove_frame(options_.output, options_.format, frame);
+  }
+
+  // The first frame beyond this run's that is there, of an earlier one; empty if none is.
+  std::string earlier() const {
+    if (options_.output.empty() || !subject_.scene()) return {};
+    const std::string path = frame_path(options_.output, options_.format, std::max(most_, written()));
+    return std::filesystem::exists(path) ? path : std::string();
   }
 
   int written() const { return static_cast<int>(frames_.size()); }
@@ -225,12 +242,17 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     return system.kinetic_energy(s.v) + system.potential_energy(s.x);
   };
   const double energy_before = energy(start), energy_after = energy(state);
+  const bool grows = watch.grows(system.kinetic_energy(state.v), system.potential_energy(state.x));
   Json report{{"method", options.method},
               {"status", stopped ? "interrupted" : outcome(result.status)},
               {"step", h},
               {"steps", result.steps},
               {"diverged", diverged},
               {"diverged_at", diverged ? number(result.failed_at) : Json()},
+              {"grows", grows},
+              {"last_step", chooser.present_step()},
+              {"last_relinearize",
+               find_method(options.method).linearized ? Json(chooser.present_relinearize()) : Json()},
               {"cpu_seconds", cpu},
               {"counts",
                {{"force_evaluations", counts.force_evaluations},
@@ -276,6 +298,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
       std::cout << text("%ld steps were halved because 1 + hD' + h²K' was not positive definite\n",
                         chooser.halved_steps());
     std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy_before, energy_after);
+    if (grows) std::cout << "the structure is unstable: its motion grows by itself\n";
     if (report.contains("last_particle")) {
       const Json& p = report["last_particle"]["position"];
       std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p[0].get<double>(), p[1].get<double>(),
@@ -290,6 +313,9 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   }
   if (std::cout.flush()) checkpoint.finish();
   recorder.finish();
+  if (const std::string earlier = recorder.earlier(); !earlier.empty())
+    std::cerr << "springstab: note: " << earlier
+              << ": this frame, and those after it, are of an earlier run\n";
   return diverged ? run_diverged : result.status == StepStatus::done ? done : no_answer;
 }
 

@@ -72,8 +72,9 @@ StepPlan StepChooser::plan(double largest_step, double duration) {
   const double linearizations = method_.linearized ? count(duration, relinearize_) : 1;
   const double steps = count(duration / linearizations, largest_step);
   if (linearizations * steps > 1e15)
-    throw InputError("--step", 0,
-                     text("would need %.3g steps, expected at most 1e15", linearizations * steps));
+    throw InputError("--duration", 0,
+                     text("%g s would take %.3g steps of %.3g s, expected at most 1e15", duration,
+                          linearizations * steps, duration / linearizations / steps));
   StepPlan result{duration / linearizations / steps, static_cast<long>(linearizations * steps)};
   if (method_.linearized) result.steps_per_linearization = static_cast<long>(steps);
   if (designed_)

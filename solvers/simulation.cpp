@@ -1,5 +1,6 @@
 #include "solvers/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace springstab {
@@ -34,16 +35,20 @@ struct Checkpoint {
 
 }  // namespace
 
+double EnergyWatch::speed_bound(double t) const {
+  return std::sqrt(std::max(initial_energy, 0.)) + gravity * std::sqrt(mass / 2) * t;
+}
+
 bool EnergyWatch::diverged(double kinetic_energy, double t) const {
-  if (initial_energy < 0) return !std::isfinite(kinetic_energy);
-  const double bound = std::sqrt(initial_energy) + gravity * std::sqrt(mass / 2) * t;
-  return !(std::sqrt(kinetic_energy) <= slack * bound);
+  return !(std::sqrt(kinetic_energy) <= slack * speed_bound(t));
 }
 
 bool EnergyWatch::gained(double total_energy, double t) const {
-  if (initial_energy < 0) return false;
-  const double bound = std::sqrt(initial_energy) + gravity * std::sqrt(mass / 2) * t;
-  return !(total_energy - initial_total <= largest_gain * bound * bound);
+  return !(total_energy - initial_total <= largest_gain * speed_bound(t) * speed_bound(t));
+}
+
+bool EnergyWatch::grows(double kinetic_energy, double potential_energy) const {
+  return may_grow && potential_energy < -kinetic_energy / 2;
 }
 
 RunSoFar start_of(const StepPlan& plan) {
@@ -63,9 +68,12 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
   Checkpoint checkpoint{state, run.steps, run.time};
   stepper.restart(stages.back().plan.steps_per_linearization);
   if (observe && !observe(run, state)) return static_cast<SimulationResult&&>(run);
-  const auto gained = [&](double t) {
-    return std::isfinite(watch.largest_gain) &&
-           watch.gained(system.kinetic_energy(state.v) + system.potential_energy(state.x), t);
+  const auto has_diverged = [&](double t) {
+    const double kinetic = system.kinetic_energy(state.v);
+    const bool fast = watch.diverged(kinetic, t);
+    if (!fast && !(run.at_checkpoint && std::isfinite(watch.largest_gain))) return false;
+    const double potential = system.potential_energy(state.x);
+    return !watch.grows(kinetic, potential) && (fast || watch.gained(kinetic + potential, t));
   };
   while (!stages.empty()) {
     Stage& stage = stages.back();
@@ -79,7 +87,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
     if (run.status == StepStatus::done) {
       ++stage.done;
       run.at_checkpoint = at_checkpoint(stage);
-      if (watch.diverged(system.kinetic_energy(state.v), t) || (run.at_checkpoint && gained(t))) {
+      if (has_diverged(t)) {
         run.status = StepStatus::diverged;
       } else {
         ++run.steps;

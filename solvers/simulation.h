@@ -27,8 +27,8 @@ struct StepPlan {
 /// themselves, near a double eigenvalue by a factor of hundreds; a diverging run grows without bound.)
 /// The total energy never grows; a run that has gained `largest_gain` times B(t) is about to diverge. That
 /// takes an evaluation of the energy, so it is asked at checkpoints only, and not at all where nothing limits
-/// the gain. A negative E0 shows a system that is not passive, whose motion may grow as it likes: then only
-/// what is not finite has diverged.
+/// the gain. A system that `may_grow`, since its K may be indefinite, is not watched while its kinetic energy
+/// comes out of a potential energy below zero: there it may grow as it likes, as long as it is finite.
 struct EnergyWatch {
   double initial_energy = 0;  // E0 [J]
   double gravity = 0;         // g [m/s²]
@@ -36,9 +36,14 @@ struct EnergyWatch {
   double slack = 1e3;
   double initial_total = 0;  // kinetic plus potential energy at the start [J]
   double largest_gain = std::numeric_limits<double>::infinity();
+  bool may_grow = false;
 
   bool diverged(double kinetic_energy, double t) const;
   bool gained(double total_energy, double t) const;
+  bool grows(double kinetic_energy, double potential_energy) const;
+
+ private:
+  double speed_bound(double t) const;  // √B(t) [√J]
 };
 
 struct SimulationResult {

@@ -188,6 +188,57 @@ BOOST_AUTO_TEST_CASE(a_run_ends_at_the_duration_and_leaves_its_frames) {
   BOOST_TEST((last >> word && word == "f"));
 }
 
+// Whether the energy is below zero at the start is for the seed to say, whether motion grows is not.
+BOOST_AUTO_TEST_CASE(what_grows_by_itself_does_not_diverge) {
+  file("soft.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 100\n2 2 -1\n");
+  bool below = false, above = false;
+  for (int seed = 1; seed <= 8; ++seed)
+    for (const char* method : {"rk4 --step 0.001", "symplectic-euler --step 0.001", "rk4"})
+      BOOST_TEST_CONTEXT(method << ", seed " << seed) {
+        const Outcome run =
+            (*this)(std::string("simulate --stiffness soft.mtx --json --duration 10 --method ") + method +
+                    " --seed " + std::to_string(seed));
+        BOOST_TEST(run.status == 0);
+        const auto report = run.json();
+        BOOST_TEST(report.at("grows") == true);
+        const double start = report.at("energy").at("initial"), end = report.at("energy").at("final");
+        if (std::string(method) == "rk4 --step 0.001") BOOST_TEST(std::abs(end - start) < 1e-3);
+        (start < 0 ? below : above) = true;
+      }
+  BOOST_TEST((below && above));
+  const Outcome text = (*this)("simulate --stiffness soft.mtx --duration 10 --method rk4");
+  BOOST_TEST(text.out.find("unstable: its motion grows by itself") != std::string::npos);
+  const Outcome calm = (*this)("simulate --grid 3x3 --pin first-row --duration 0.1 --method rk4 --json");
+  BOOST_TEST(calm.json().at("grows") == false);
+  // A step beyond the limit of the stiff mode is too long all the same.
+  for (int seed = 1; seed <= 8; ++seed)
+    BOOST_TEST((*this)("simulate --stiffness soft.mtx --duration 30 --method rk4 --step 0.3 --seed " +
+                       std::to_string(seed))
+                   .status == 4);
+}
+
+BOOST_AUTO_TEST_CASE(what_a_run_cannot_use_is_refused) {
+  const auto refused = [&](const std::string& options) {
+    const Outcome run =
+        (*this)("simulate --grid 3x3 --pin 0 --duration 0.1 --method implicit-euler " + options);
+    BOOST_TEST(run.status == 2);
+    return run.err;
+  };
+  for (const char* tolerance : {"1", "2", "0", "nan"})
+    BOOST_TEST(refused(std::string("--cg-tolerance ") + tolerance).find("less than 1") != std::string::npos);
+  BOOST_TEST(refused("--frames 2147483647").find("expected 1 to 10000000") != std::string::npos);
+  BOOST_TEST(refused("--step 3e-4 --max-step 1e-4").find("expected at most --max-step") != std::string::npos);
+  BOOST_TEST(refused("--seed -1").find("--seed") != std::string::npos);
+  BOOST_TEST(refused("--max-step 1e-300").find("steps of 1e-300 s") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(frames_of_an_earlier_run_are_told) {
+  const std::string run = "simulate --grid 3x3 --pin 0 --duration 0.1 --method rk4 --output out --frames ";
+  BOOST_TEST((*this)(run + "9").err == "");
+  BOOST_TEST((*this)(run + "9").err == "");
+  BOOST_TEST((*this)(run + "4").err.starts_with("springstab: note: out/frame_00005.obj: "));
+}
+
 BOOST_AUTO_TEST_CASE(divergence_is_status_4_with_its_time) {
   const Outcome run = (*this)(
       "simulate --grid 8x8 --pin corners --method symplectic-euler --duration 1 --step 0.01 "

@@ -3,9 +3,11 @@
 // on another number of threads too.
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <chrono>
 #include <cmath>
@@ -170,6 +172,28 @@ Json counted(Journal& journal, int& computed, int until = 3) {
   return all;
 }
 
+const Arguments endless{"--duration", "1e6",      "--method", "symplectic-euler", "--step", "1e-4",
+                        "--json",     "--output", "out"};
+
+// Runs until there is a checkpoint, and kills.
+void kill_at_checkpoint(const fs::path& folder, const Arguments& arguments) {
+  const Command command(folder, arguments);
+  const fs::path checkpoint = folder / "out" / "simulate.checkpoint";
+  for (int i = 0; i < 5000 && !fs::exists(checkpoint); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  command.send(SIGKILL);
+  BOOST_REQUIRE(command.wait() == -SIGKILL);
+  BOOST_REQUIRE(fs::exists(checkpoint));
+}
+
+std::string refusal(const fs::path& folder, Arguments arguments, bool resume = true) {
+  if (resume) arguments.emplace_back("--resume");
+  const Command command(folder, arguments);
+  BOOST_TEST(command.wait() == 2);
+  BOOST_TEST(command.out().empty());
+  return command.err();
+}
+
 }  // namespace
 
 BOOST_FIXTURE_TEST_SUITE(resume, Folder)
@@ -268,6 +292,59 @@ BOOST_AUTO_TEST_CASE(an_interrupted_simulation_goes_on_from_its_own_whole_checkp
     write(checkpoint, whole.substr(0, length));
     refused("--frames", "100", "is damaged");
   }
+}
+
+BOOST_AUTO_TEST_CASE(another_mesh_behind_the_same_scene_is_refused) {
+  write(path() / "mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
+  write(path() / "scene.JSON", R"({"geometry": {"mesh": "mesh.obj"}, "pins": [0]})");
+  Arguments run{"simulate", "scene.JSON"};
+  run.insert(run.end(), endless.begin(), endless.end());
+  kill_at_checkpoint(path(), run);
+  write(path() / "mesh.obj", "v 0 0 0\nv 2 0 0\nv 0 0 1\nf 1 2 3\n");
+  BOOST_TEST(refusal(path(), run).find("expected the same inputs/file/mesh/hash") != std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(a_pipe_is_not_resumed) {
+  BOOST_REQUIRE(mkfifo((path() / "pipe").c_str(), 0600) == 0);
+  const auto feed = [&] {
+    return std::thread([this] { write(path() / "pipe", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n"); });
+  };
+  Arguments run{"simulate", "pipe", "--pin", "0"};
+  run.insert(run.end(), endless.begin(), endless.end());
+  std::thread first = feed();
+  kill_at_checkpoint(path(), run);
+  first.join();
+  std::thread second = feed();
+  BOOST_TEST(refusal(path(), run).find("pipe: is no regular file") != std::string::npos);
+  second.join();
+}
+
+BOOST_AUTO_TEST_CASE(two_runs_do_not_share_an_output) {
+  Arguments run{"simulate", "--grid", "3x3", "--pin", "0"};
+  run.insert(run.end(), endless.begin(), endless.end());
+  const Command first(path(), run);
+  for (int i = 0; i < 5000 && !fs::exists(path() / "out" / "simulate.checkpoint"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const fs::path elsewhere = path() / "elsewhere";  // for what the second one says
+  fs::create_directories(elsewhere);
+  for (Arguments second : {run, divergence, complexity}) {
+    *std::find(second.begin(), second.end(), "out") = "../out";
+    BOOST_TEST(refusal(elsewhere, second, false).find("../out: is in use") != std::string::npos);
+  }
+  first.send(SIGKILL);
+  first.wait();
+  BOOST_TEST(fs::exists(path() / "out" / "simulate.checkpoint"));
+}
+
+BOOST_AUTO_TEST_CASE(what_is_missing_in_the_folder_is_named) {
+  Arguments run{"simulate", "--grid", "3x3", "--pin", "0"};
+  run.insert(run.end(), endless.begin(), endless.end());
+  kill_at_checkpoint(path(), run);
+  fs::remove(path() / "out" / "frame_00000.obj");
+  BOOST_TEST(refusal(path(), run).find("out/frame_00000.obj: is missing") != std::string::npos);
+  fs::remove(path() / "out" / "simulate.checkpoint");
+  fs::create_directories(path() / "out" / "simulate.checkpoint");
+  BOOST_TEST(refusal(path(), run).find("simulate.checkpoint: is a folder") != std::string::npos);
 }
 
 // How far a contestant gets is for the clock to say; as far as two runs both get, they agree.

@@ -17,6 +17,7 @@
 #include "experiments/precision/contest_figure.h"
 #include "experiments/precision/long_runs.h"
 #include "experiments/precision/scenes.h"
+#include "solvers/io/input_error.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/spring_chain.h"
 #include "solvers/stepper.h"
@@ -183,6 +184,22 @@ BOOST_AUTO_TEST_CASE(an_integration_says_how_far_it_came) {
   const State<Vector> nowhere{Vector::Constant(5, NAN), start.v};
   const AdaptiveResult lost = integrate_adaptively(chain, nowhere, {0.5, 2}, {});
   BOOST_TEST((!lost.finished && lost.at.empty()));
+}
+
+// Errors are relative to motion.
+BOOST_AUTO_TEST_CASE(where_nothing_moves_there_is_no_reference) {
+  SceneDescription description = hung_cloth();
+  description.initial.stretch = {1, 1, 1};
+  Problem falls("falls", Subject(description), 0.01, quiet);
+  BOOST_TEST(reference_motion(falls, "").error.all_finite());
+  Problem instant("instant", Subject(description), 1e-300, quiet);
+  BOOST_CHECK_THROW(reference_motion(instant, ""), InputError);
+  description.gravity.setZero();
+  Problem rests("rests", Subject(description), 0.01, quiet);
+  BOOST_CHECK_THROW(reference_motion(rests, ""), InputError);
+  description.material = ClothMaterial{};  // moves by rounding errors
+  Problem trembles("trembles", Subject(description), 0.01, quiet);
+  BOOST_CHECK_THROW(reference_motion(trembles, ""), InputError);
 }
 
 // The same scene, nothing linear about it: RK4 at two small steps, extrapolated, knows nothing of the

@@ -75,7 +75,7 @@ bool linear_run_diverges(Scene& scene, const State<Vector>& start, const Case& c
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (double& x : state.x) x = uniform(random);
-  const EnergyWatch watch{.initial_energy = linear.potential_energy(state.x)};
+  const EnergyWatch watch{.initial_energy = linear.potential_energy(state.x), .may_grow = true};
   const auto stepper = make_stepper(c.method.name);
   return simulate(linear, *stepper, {h, steps}, watch, state).status != StepStatus::done;
 }

@@ -84,7 +84,7 @@ Scenes subjects(const DivergenceOptions& options) {
   for (const std::string& file : options.scenes) {
     InputOptions input;
     input.file = file;
-    if (!file.ends_with(".json")) input.pin = options.pin;
+    if (!is_scene_file(file)) input.pin = options.pin;
     Subject subject(input);
     if (subject.scene()->has_own_damping())
       throw InputError(file, 0, "has a material with damping, expected none: this study sets the damping");
@@ -232,7 +232,7 @@ Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
 int run_divergence(const CommonOptions& common, const DivergenceOptions& options) {
   Scenes scenes = subjects(options);
   Json inputs = Json::array();
-  for (const std::string& scene : options.scenes) inputs.push_back(contents_of(scene));
+  for (const std::string& scene : options.scenes) inputs.push_back(contents_of(scene, options.resume));
   const Json settings{{"pin", options.pin},
                       {"cells", options.cells},
                       {"steps", options.steps},

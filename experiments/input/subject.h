@@ -98,6 +98,9 @@ class Subject {
   InitialDescription initial_;
 };
 
+/// Whether a file is a scene, by its suffix.
+bool is_scene_file(const std::string& path);
+
 /// "NxM" as a grid. Throws InputError(source, ...).
 Grid parse_grid(const std::string& text, const std::string& source);
 

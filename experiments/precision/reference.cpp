@@ -15,6 +15,7 @@
 #include "experiments/output.h"
 #include "experiments/precision/peers.h"
 #include "experiments/precision/scales.h"
+#include "solvers/io/input_error.h"
 
 namespace springstab {
 namespace {
@@ -42,9 +43,21 @@ Trajectory integrated(Problem& problem, double tolerance) {
       problem.system(), problem.start(), sample_times(problem),
       {.tolerance = tolerance, .place_scale = scales.place, .velocity_scale = scales.velocity});
   if (!result.finished)
-    throw std::runtime_error("the reference could not be integrated to its end; take a shorter duration");
+    throw InputError(
+        "--duration", 0,
+        text("is %g s, expected less: the reference could not be integrated to its end", problem.duration()));
   result.at.insert(result.at.begin(), problem.start());
   return std::move(result.at);
+}
+
+// Errors are relative to the motion; where there is none but rounding they say nothing.
+void expect_motion(Problem& problem, const Trajectory& trajectory) {
+  double farthest = 0;
+  for (const State<Vector>& s : trajectory)
+    farthest = std::max(farthest, (s.x - problem.start().x).cwiseAbs().maxCoeff());
+  if (!(farthest > 1e-12 * scales_of(problem).place))
+    throw InputError("--duration", 0,
+                     text("nothing moves in %g s, expected motion to tell errors from", problem.duration()));
 }
 
 std::optional<Errors> check(Problem& problem, const Trajectory& reference) {
@@ -60,6 +73,7 @@ Reference compute(Problem& problem) {
   Reference reference;
   reference.method = modes ? "closed form, mode by mode" : "GSL rk8pd, tolerances 1e-10 and 1e-12";
   reference.trajectory = modes ? by_modes(problem, 0) : integrated(problem, tight);
+  expect_motion(problem, reference.trajectory);
   const Trajectory other = modes ? by_modes(problem, 1) : integrated(problem, loose);
   reference.error = errors_of(problem.system(), other, reference.trajectory);
   // No phase √k0 t is known better than to its rounding, even if both computations round alike.

@@ -41,7 +41,8 @@ inline constexpr char reference_check[] = "Bulirsch-Stoer, tolerance 1e-13";
 /// rk8pd with the tolerances 1e-10 and 1e-12, and the error is the difference of the two. Checked by
 /// Boost.odeint's Bulirsch-Stoer where that was there when this was built, and gets through in two
 /// CPU-minutes. Kept in the folder `cache` (empty: nowhere) under the problem's fingerprint. With the
-/// problem's own damping, designed or not. Throws std::runtime_error where the integration does not finish.
+/// problem's own damping, designed or not. Throws InputError where the integration does not finish or
+/// nothing moves.
 Reference reference_motion(Problem& problem, const std::string& cache);
 
 /// A hash of what the problem does: its start, duration, masses, energies and accelerations there and at

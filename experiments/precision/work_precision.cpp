@@ -96,7 +96,8 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
       {"duration", options.duration},     {"damping", options.designed_damping ? "designed" : "own"},
       {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
       {"libraries", options.libraries},   {"seed", common.seed}};
-  Journal journal(options.output, identity_of("work-precision", settings, contents_of(options.input)),
+  Journal journal(options.output,
+                  identity_of("work-precision", settings, contents_of(options.input, options.resume)),
                   options.resume, common.quiet);
   const std::string missing = missing_peers();
   if (options.libraries && !missing.empty() && !common.quiet)

@@ -76,4 +76,16 @@ bool DefinitenessProof::holds(double c, double a, double b) {
   return false;
 }
 
+bool is_semidefinite(const SparseMatrix& a, const SparseMatrix& mass) {
+  const Eigen::VectorXd d = mass.diagonal().cwiseSqrt().cwiseInverse();
+  SparseMatrix shifted = scaled(a, d);
+  if (shifted.nonZeros() == 0) return true;
+  const double largest = shifted.coeffs().abs().maxCoeff();
+  const Eigen::VectorXd diagonal = shifted.diagonal();
+  SparseMatrix shift(a.rows(), a.cols());
+  shift.setIdentity();
+  shift.diagonal() = 1e-9 * diagonal.cwiseAbs() + Eigen::VectorXd::Constant(a.rows(), 1e-13 * largest);
+  return Eigen::SimplicialLLT<SparseMatrix>(shifted + shift).info() == Eigen::Success;
+}
+
 }  // namespace springstab

@@ -29,4 +29,8 @@ class DefinitenessProof {
   std::unique_ptr<Factor> factor_;
 };
 
+/// Whether a symmetric matrix has no eigenvalue below zero but for rounding: of 1e-9 of the diagonal, unknown
+/// by unknown, and of 1e-13 of the largest entry of M^-½ A M^-½. By a Cholesky factorization.
+bool is_semidefinite(const SparseMatrix& a, const SparseMatrix& mass);
+
 }  // namespace springstab

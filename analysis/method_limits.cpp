@@ -1,20 +1,37 @@
 #include "analysis/method_limits.h"
 
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "analysis/definiteness.h"
 
 namespace springstab {
 namespace {
 
 double frobenius_product(const SparseMatrix& a, const SparseMatrix& b) { return a.cwiseProduct(b).sum(); }
 
-bool is_semidefinite(const SparseMatrix& a) {
-  const double size = Eigen::VectorXd(a.diagonal()).cwiseAbs().maxCoeff();
-  SparseMatrix shift(a.rows(), a.cols());
-  shift.setIdentity();
-  return size > 0 && Eigen::SimplicialLLT<SparseMatrix>(a + 1e-12 * size * shift).info() == Eigen::Success;
+// S A S with S = 1/√D_ii, or 1/√M_ii where nothing damps: unknowns weigh alike, however light or soft.
+StructuralMatrices unit_damping(const StructuralMatrices& s) {
+  const Eigen::VectorXd damping = s.damping.diagonal(), mass = s.mass.diagonal();
+  const Eigen::VectorXd root = (damping.array() > 0).select(damping, mass).cwiseSqrt().cwiseInverse();
+  const auto scaled = [&](const SparseMatrix& a) {
+    const SparseMatrix rows = root.asDiagonal() * a;
+    return SparseMatrix(rows * root.asDiagonal());
+  };
+  StructuralMatrices unit;
+  unit.stiffness = scaled(s.stiffness);
+  unit.mass = scaled(s.mass);
+  unit.damping = scaled(s.damping);
+  return unit;
+}
+
+// Whether no entry is larger than `tolerance` times √(size_i size_j).
+bool is_negligible(const SparseMatrix& a, double tolerance, const Eigen::VectorXd& size) {
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      if (!(std::abs(it.value()) <= tolerance * std::sqrt(size[it.row()]) * std::sqrt(size[j]))) return false;
+  return true;
 }
 
 // The least-squares fit of D by d0 M + alpha K, scaled so that M and K have unit size.
@@ -42,13 +59,19 @@ DampingModel classify_damping(const StructuralMatrices& s) {
   if (!s.has_damping()) return {};
   if (!s.symmetric) return {DampingModel::Kind::general, 0, 0, false};
   constexpr double tolerance = 1e-12;
-  DampingModel fit = rayleigh_fit(s);
-  const double size = s.damping.norm();
-  if (fit.d0 < 0 && -fit.d0 * s.mass.norm() <= tolerance * size) fit.d0 = 0;
-  if (fit.alpha < 0 && -fit.alpha * s.stiffness.norm() <= tolerance * size) fit.alpha = 0;
-  const SparseMatrix rest = s.damping - fit.d0 * s.mass - fit.alpha * s.stiffness;
-  if (fit.d0 >= 0 && fit.alpha >= 0 && rest.norm() <= tolerance * size) return fit;
-  return {DampingModel::Kind::general, 0, 0, is_semidefinite(s.damping)};
+  const StructuralMatrices unit = unit_damping(s);
+  DampingModel fit = rayleigh_fit(unit);
+  const double size = unit.damping.norm();
+  if (fit.d0 < 0 && -fit.d0 * unit.mass.norm() <= tolerance * size) fit.d0 = 0;
+  if (fit.alpha < 0 && -fit.alpha * unit.stiffness.norm() <= tolerance * size) fit.alpha = 0;
+  if (fit.d0 >= 0 && fit.alpha >= 0) {
+    const SparseMatrix rest = unit.damping - fit.d0 * unit.mass - fit.alpha * unit.stiffness;
+    const Eigen::VectorXd sizes = Eigen::VectorXd(unit.damping.diagonal()).cwiseAbs() +
+                                  fit.d0 * Eigen::VectorXd(unit.mass.diagonal()) +
+                                  fit.alpha * Eigen::VectorXd(unit.stiffness.diagonal()).cwiseAbs();
+    if (is_negligible(rest, tolerance, sizes)) return fit;
+  }
+  return {DampingModel::Kind::general, 0, 0, is_semidefinite(s.damping, s.mass)};
 }
 
 MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,

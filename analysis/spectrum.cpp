@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 
 #include "analysis/chebyshev_filter.h"
@@ -133,7 +134,41 @@ bool is_below(const StructuralMatrices& s, double sigma) {
   return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);
 }
 
+namespace {
+
+// Of M^-½ A M^-½.
+double largest_scaled_entry(const SparseMatrix& a, const Eigen::VectorXd& inverse_root) {
+  double largest = 0;
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      largest = std::max(largest, inverse_root[it.row()] * std::abs(it.value()) * inverse_root[j]);
+  return largest;
+}
+
+// With damping, or without symmetry, powers up to the fourth of the rates are formed.
+void expect_within_double_precision(const StructuralMatrices& s) {
+  const Eigen::VectorXd root = inverse_root(s.mass);
+  const double k = largest_scaled_entry(s.stiffness, root);
+  const double d = s.has_damping() ? largest_scaled_entry(s.damping, root) : 0;
+  const bool plain = s.symmetric && !s.has_damping();
+  const double least = plain ? std::numeric_limits<double>::denorm_min() : 1e-75;
+  const double most = plain ? std::numeric_limits<double>::max() : 1e75;
+  const double rate = plain ? k : std::max(std::sqrt(k), d);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(s.size());
+  const bool none =
+      largest_scaled_entry(s.stiffness, ones) == 0 && largest_scaled_entry(s.damping, ones) == 0;
+  if (none || (rate >= least && rate <= most)) return;
+  std::ostringstream message;
+  message << (plain ? "the largest mass-scaled stiffness is " : "the largest rate of motion is ") << rate
+          << (plain ? " 1/s²" : " 1/s") << ", expected " << least << " to " << most
+          << "; take a unit of time nearer to it";
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace
+
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+  expect_within_double_precision(s);
   const LinearOperator op = scaled_stiffness(s);
   StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op, options)
                       : s.size() <= dense_limit ? dense_spectrum(op)
@@ -151,6 +186,7 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   }
   if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return mode;
 
+  mode.indefinite = !is_semidefinite(s.stiffness, s.mass);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;
   double gap = std::max(mode.residual, 1e-10 * scale);
@@ -160,7 +196,6 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
     mode.upper_bound = mode.value + gap;
     mode.bound_kind = BoundKind::inertia;
   }
-  mode.indefinite = Cholesky(s.stiffness + 1e-9 * scale * s.mass).info() != Eigen::Success;
   return mode;
 }
 

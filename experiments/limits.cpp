@@ -142,8 +142,8 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
   if (s.condensed > 0)
     std::cout << text(" (after eliminating %ld without mass)", static_cast<long>(s.condensed));
-  std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g), 2/√k0 = %.6g s\n", k0.value, value_kind(k0),
-                    k0.residual, 2 / std::sqrt(k0.value));
+  std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
+  std::cout << (k0.value < 0 ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
   if (k0.indefinite)
     std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <iostream>
+#include <set>
 
 #include "analysis/amplification.h"
 #include "experiments/experiments.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double neutral_band = 1e-9;  // |ρ - 1| at most this counts as neutral
 constexpr long largest_grid = 100'000'000;
+constexpr int largest_side = 10'000;
 
 struct CellCentres {
   std::vector<double> x, y;
@@ -55,6 +57,37 @@ void parse_range(const std::string& range, const std::string& option, double& lo
   const auto second = colon ? std::from_chars(first.ptr + 1, end, high) : first;
   if (!colon || second.ec != std::errc() || second.ptr != end || !(low < high) || !std::isfinite(high - low))
     throw InputError(option, 0, "'" + range + "' is not a range, expected A:B with A < B like -0.5:5");
+}
+
+// Beyond these the powers of X and Y that a region's equations have leave double precision.
+void check(const Window& window) {
+  constexpr double farthest = 1e30, narrowest = 1e-9;
+  const auto expect = [](const char* option, double low, double high) {
+    if (std::max(std::abs(low), std::abs(high)) > farthest || high - low < narrowest)
+      throw InputError(
+          option, 0,
+          text("is %g:%g, expected a range of at least %g within ±%g", low, high, narrowest, farthest));
+  };
+  expect("--x", window.x_min, window.x_max);
+  expect("--y", window.y_min, window.y_max);
+}
+
+void check(const RegionOptions& options) {
+  if (options.nx < 1 || options.ny < 1 || static_cast<long>(options.nx) * options.ny > largest_grid)
+    throw InputError("--nx, --ny", 0,
+                     text("a grid of %d x %d cells is not possible, expected 1 to %ld cells", options.nx,
+                          options.ny, largest_grid));
+  if (options.simulated_cells < 0 || options.simulated_cells > largest_side)
+    throw InputError("--simulate", 0,
+                     text("is %d, expected 0 to %d cells a side", options.simulated_cells, largest_side));
+  if (options.cell_steps < 1)
+    throw InputError("--steps", 0, text("is %ld, expected at least 1", options.cell_steps));
+  if (!options.cells.empty() && options.simulated_cells == 0)
+    throw InputError("--cells", 0, "is for the cells of --simulate, which was not given");
+  std::set<std::string> outputs;
+  for (const std::string* file : {&options.raster, &options.boundary, &options.pieces, &options.cells})
+    if (!file->empty() && !outputs.insert(*file).second)
+      throw InputError(*file, 0, "is to be written twice, expected a file for each output");
 }
 
 }  // namespace
@@ -138,10 +171,8 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
   CellGrid grid{region.natural_window(0.1), options.nx, options.ny};
   parse_range(options.x, "--x", grid.window.x_min, grid.window.x_max);
   parse_range(options.y, "--y", grid.window.y_min, grid.window.y_max);
-  if (options.nx < 1 || options.ny < 1 || static_cast<long>(options.nx) * options.ny > largest_grid)
-    throw InputError("--nx, --ny", 0,
-                     text("a grid of %d x %d cells is not possible, expected 1 to %ld cells", options.nx,
-                          options.ny, largest_grid));
+  check(grid.window);
+  check(options);
 
   const std::vector<double> radii = spectral_radii(options.method, grid, common.threads);
   long stable = 0, neutral = 0;

@@ -232,6 +232,42 @@ BOOST_AUTO_TEST_CASE(what_a_run_cannot_use_is_refused) {
   BOOST_TEST(refused("--max-step 1e-300").find("steps of 1e-300 s") != std::string::npos);
 }
 
+BOOST_AUTO_TEST_CASE(what_leaves_double_precision_is_refused) {
+  const auto matrix = [](const std::string& a, const std::string& b) {
+    return "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 " + a + "\n2 2 " + a + "\n2 1 " + b +
+           "\n";
+  };
+  const auto limits = [&](const std::string& options) {
+    return (*this)("limits --stiffness K.mtx " + options);
+  };
+  for (const auto& [k, d] :
+       {std::pair("e200", "e100"), {"e160", "e80"}, {"e-170", "e-85"}, {"e-200", "e-100"}}) {
+    file("K.mtx", matrix(std::string("2") + k, std::string("-1") + k));
+    file("D.mtx", matrix(std::string("2") + d, std::string("1") + d));
+    const Outcome refused = limits("--damping-matrix D.mtx");
+    BOOST_TEST(refused.status == 2);
+    BOOST_TEST(refused.err.find("take a unit of time nearer to it") != std::string::npos);
+  }
+  file("K.mtx", matrix("2e-300", "-1e-300"));
+  file("M.mtx", matrix("2e300", "0"));
+  BOOST_TEST(limits("--mass M.mtx").status == 2);
+  file("K.mtx", matrix("-2", "0"));
+  BOOST_TEST(limits("").out.find("nan") == std::string::npos);
+}
+
+BOOST_AUTO_TEST_CASE(regions_of_impossible_windows_are_refused) {
+  for (const char* options :
+       {"--x 0:1e80 --y 0:1", "--x 0:1e-12", "--y 0:1e300", "--simulate -3", "--simulate 100000",
+        "--simulate 3 --steps 0", "--cells c.csv", "--raster a.csv --boundary a.csv"})
+    BOOST_TEST_CONTEXT(options) {
+      const Outcome refused = (*this)(std::string("region rk4 ") + options);
+      BOOST_TEST(refused.status == 2);
+      BOOST_TEST(lines(refused.err) == 1);
+      BOOST_TEST(!std::filesystem::exists(folder() / "a.csv"));
+    }
+  BOOST_TEST((*this)("region rk4 --x -1e30:1e30 --y -1e30:1e30 --nx 3 --ny 3").status == 0);
+}
+
 BOOST_AUTO_TEST_CASE(frames_of_an_earlier_run_are_told) {
   const std::string run = "simulate --grid 3x3 --pin 0 --duration 0.1 --method rk4 --output out --frames ";
   BOOST_TEST((*this)(run + "9").err == "");

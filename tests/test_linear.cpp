@@ -464,7 +464,8 @@ BOOST_AUTO_TEST_CASE(asymmetry_is_averaged_away_up_to_a_tolerance_and_refused_ab
   Random random(22);
   const Dense good = random.definite(4);
   for (const double scale : {1e-30, 1.0, 1e30}) {  // the tolerance is relative
-    const double largest = scale * good.cwiseAbs().maxCoeff();
+    const double largest =
+        scale * std::sqrt(good(1, 1) * good(3, 3));  // that a definite matrix could have there
     const auto with_asymmetry = [&](double a) {
       Dense wrong = scale * good;
       wrong(1, 3) += a * largest;
@@ -481,6 +482,15 @@ BOOST_AUTO_TEST_CASE(asymmetry_is_averaged_away_up_to_a_tolerance_and_refused_ab
     expect_refused([&] { prepare(unit, none, with_asymmetry(-1.1e-10)); },
                    "the damping matrix is not symmetric");
   }
+  // Also beside what is far larger; and the smallest and the largest numbers are averaged to themselves.
+  Dense light = Dense::Identity(3, 3), extreme{{1.7e308, 5e-324}, {5e-324, 1.7e308}};
+  light(0, 0) = 1e12;
+  light(1, 2) = 3;
+  light(2, 1) = -3;
+  expect_refused([&] { prepare(sparse(light)); },
+                 "the stiffness matrix is not symmetric (entry 3, 2 differs from its mirror image by 6)");
+  BOOST_TEST(!prepare_nonsymmetric(sparse(light), {}, {}).symmetric);
+  BOOST_TEST((Dense(prepare(sparse(extreme)).stiffness) == extreme));
 }
 
 BOOST_AUTO_TEST_CASE(matrices_that_no_structure_has_are_refused_by_name) {

@@ -856,6 +856,24 @@ BOOST_AUTO_TEST_CASE(damping_is_rayleigh_exactly_when_it_is) {
       const Vector direction = random.matrix(8, 1);
       BOOST_TEST(classify(direction * direction.transpose()).semidefinite);  // one damper
     }
+  // What is light or soft counts like the rest.
+  const auto diagonal = [](double a, double b) { return sparse(Dense{{a, 0}, {0, b}}); };
+  const SparseMatrix heavy = diagonal(1e14, 1), light = diagonal(1, 1e-14);
+  BOOST_TEST((classify_damping(prepare(heavy, heavy, diagonal(1e14, 0))).kind == Kind::general));
+  BOOST_TEST((classify_damping(prepare(light, light, diagonal(1, 8e-14))).kind == Kind::general));
+  BOOST_TEST((classify_damping(prepare(heavy, diagonal(1, 1), diagonal(1e14, 0.5))).kind == Kind::general));
+  BOOST_TEST(!classify_damping(prepare(light, light, diagonal(1, -9e-13))).semidefinite);
+  for (const SparseMatrix& mass : {heavy, light}) {
+    const DampingModel both =
+        classify_damping(prepare(diagonal(1e7, 3), mass, 0.2 * mass + 0.1 * diagonal(1e7, 3)));
+    BOOST_TEST((both.kind == Kind::rayleigh));
+    BOOST_TEST(both.d0 == 0.2, tolerance(1e-8));  // 2e-7 of D or more
+    BOOST_TEST(both.alpha == 0.1, tolerance(1e-8));
+  }
+  BOOST_TEST(stiffest_mode(prepare(diagonal(1e12, -900))).indefinite);
+  BOOST_TEST(stiffest_mode(prepare(diagonal(0, -1))).indefinite);
+  BOOST_TEST(!stiffest_mode(prepare(diagonal(1e12, 0))).indefinite);
+
   const SparseMatrix one = sparse(Dense::Identity(3, 3));
   BOOST_TEST((classify_damping(prepare(one)).kind == Kind::none));
   const DampingModel proportional =

@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -13,17 +14,25 @@ namespace {
 
 using Triplet = Eigen::Triplet<double>;
 
-constexpr double symmetry_tolerance = 1e-10;  // of the largest entry; real matrices are symmetric to rounding
+constexpr double symmetry_tolerance = 1e-10;  // real matrices are symmetric to rounding
 constexpr Eigen::Index largest_condensed = 5000;
 
 std::string shape(const SparseMatrix& a) {
   return std::to_string(a.rows()) + " x " + std::to_string(a.cols());
 }
 
-double largest_entry(const SparseMatrix& a) {
-  double largest = 0;
-  for (Eigen::Index k = 0; k < a.nonZeros(); ++k) largest = std::max(largest, std::abs(a.valuePtr()[k]));
-  return largest;
+// The first entry that differs from its mirror image by more than rounding: of the larger one, and of what a
+// definite matrix could have there, √(a_ii a_jj). So it counts what is small beside others.
+std::optional<Triplet> asymmetric_entry(const SparseMatrix& a, const SparseMatrix& transposed) {
+  const SparseMatrix difference = a - transposed;
+  const Eigen::VectorXd root = Eigen::VectorXd(a.diagonal()).cwiseAbs().cwiseSqrt();
+  for (Eigen::Index j = 0; j < difference.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(difference, j); it; ++it) {
+      const double larger = std::max(std::abs(a.coeff(it.row(), j)), std::abs(a.coeff(j, it.row())));
+      if (std::abs(it.value()) > symmetry_tolerance * std::max(larger, root[it.row()] * root[j]))
+        return Triplet(static_cast<int>(it.row()), static_cast<int>(j), it.value());
+    }
+  return std::nullopt;
 }
 
 // The symmetric part of `a`, after checking that there is next to nothing else; or all of it, where
@@ -38,18 +47,18 @@ SparseMatrix checked(SparseMatrix a, const std::string& name, Eigen::Index size,
       throw std::invalid_argument("the " + name +
                                   " matrix has an entry that is not finite, expected finite numbers");
   const SparseMatrix transposed = a.transpose();
-  const double asymmetry = largest_entry(a - transposed), largest = largest_entry(a);
-  if (asymmetry > symmetry_tolerance * largest) {
+  if (const std::optional<Triplet> entry = asymmetric_entry(a, transposed)) {
     if (symmetric) {
       *symmetric = false;
       return a;
     }
     std::ostringstream message;
-    message << "the " << name << " matrix is not symmetric (an entry differs from its mirror image by "
-            << asymmetry << ", the largest entry is " << largest << "), expected a symmetric one";
+    message << "the " << name << " matrix is not symmetric (entry " << entry->row() + 1 << ", "
+            << entry->col() + 1 << " differs from its mirror image by " << std::abs(entry->value())
+            << "), expected a symmetric one";
     throw std::invalid_argument(message.str());
   }
-  return 0.5 * (a + transposed);
+  return a + 0.5 * (transposed - a);  // neither overflows nor underflows where both are the same
 }
 
 // Rows and columns `keep` of a, in that order; -1 in `position` marks what is dropped.

@@ -154,6 +154,8 @@ void add_matrices(std::vector<StressCase>& all) {
   add("damping", "does not commute", damped, {k4, {}, dashpots});
   add("damping", "does not commute, 1000 times", damped, {k4, {}, 1000 * dashpots});
   add("damping", "one dashpot", damped, {k4, {}, one});
+  const Matrix apart = Vector{{1, 1e-13}}.asDiagonal();
+  add("damping", "of a mass of 1e-13, eightfold", damped, {apart, apart, Vector{{1, 8e-13}}.asDiagonal()});
   add("damping", "negative", {right, {{"symplectic-euler", no_step}}}, {k4, {}, -0.01 * k4});  // it grows
   add("damping", "skew (gyroscopic)", impossible,
       {k4, {}, Matrix{{0, 1, 0, 0}, {-1, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}}});
@@ -191,6 +193,7 @@ void add_matrices(std::vector<StressCase>& all) {
   add("structure", "massless and loose", impossible, {chain({1, 0, 0, 1}), Vector{{1, 0, 1}}.asDiagonal()});
   add("structure", "negative mass", impossible, {uniform(3, 1), Vector{{1, -1, 1}}.asDiagonal()});
   add("structure", "K not symmetric", impossible, {Matrix{{2, -1}, {0, 2}}});
+  add("structure", "K not symmetric beside 1e12", impossible, {Matrix{{1e12, 0, 0}, {0, 1, 3}, {0, -3, 1}}});
   add("structure", "K not square", impossible, {Matrix::Ones(2, 3)});
   add("structure", "M of another size", impossible, {uniform(3, 1), Matrix::Identity(4, 4)});
   const std::string banner = "%%MatrixMarket matrix coordinate real general\n";
@@ -202,6 +205,9 @@ void add_matrices(std::vector<StressCase>& all) {
   add("structure", "denormal K", undamped, {uniform(2, 1e-310)});
   add("structure", "K and M of 1e-150", undamped, {uniform(2, 1e-150), 1e-150 * masses(2, 1, 1)});
   add("structure", "K of 1e60, M of 1e-60", undamped, {uniform(2, 1e60), 1e-60 * masses(2, 1, 1)});
+  for (double rate : {1e-100, 1e80})
+    add("structure", text("rates of %g, damped", rate), impossible,
+        {rate * rate * Matrix{{2, -1}, {-1, 2}}, {}, rate * Matrix{{1, 0}, {0, 2}}});
   Expectation overflowing = undamped;
   overflowing.outcome = diverges;
   add("structure", "K of 1e150, M of 1e-150: v² overflows", overflowing,
@@ -235,6 +241,7 @@ void add_scenes(std::vector<StressCase>& all) {
   grid("undamped", undamped, 0.1, "[4, 4]",
        pinned + R"("material": {"structural": 10, "shear": 5, "bending": 1})");
   grid("let go flat", damped, 0.2, "[4, 4]", s + pinned + d);
+  grid("at rest without gravity", undamped, 0.2, "[4, 4]", cloth + pinned + R"("gravity": [0, 0, 0])", false);
   grid("slack: all springs at half length", damped, 0.01, "[4, 4]",
        s + pinned + d + R"(, "initial": {"stretch": [0.5, 1, 0.5]})");
   grid("compressed to a hundredth", damped, 1e-3, "[4, 4]",

@@ -9,11 +9,6 @@ namespace {
 
 constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
-SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
-  SparseMatrix b = d.asDiagonal() * a;
-  return b * d.asDiagonal();
-}
-
 Eigen::VectorXd row_sums(const SparseMatrix& a) { return a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()); }
 
 }  // namespace

@@ -15,14 +15,10 @@ double frobenius_product(const SparseMatrix& a, const SparseMatrix& b) { return 
 StructuralMatrices unit_damping(const StructuralMatrices& s) {
   const Eigen::VectorXd damping = s.damping.diagonal(), mass = s.mass.diagonal();
   const Eigen::VectorXd root = (damping.array() > 0).select(damping, mass).cwiseSqrt().cwiseInverse();
-  const auto scaled = [&](const SparseMatrix& a) {
-    const SparseMatrix rows = root.asDiagonal() * a;
-    return SparseMatrix(rows * root.asDiagonal());
-  };
   StructuralMatrices unit;
-  unit.stiffness = scaled(s.stiffness);
-  unit.mass = scaled(s.mass);
-  unit.damping = scaled(s.damping);
+  unit.stiffness = scaled(s.stiffness, root);
+  unit.mass = scaled(s.mass, root);
+  unit.damping = scaled(s.damping, root);
   return unit;
 }
 

@@ -23,11 +23,6 @@ constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
 Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
 
-SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
-  SparseMatrix b = d.asDiagonal() * a;
-  return b * d.asDiagonal();
-}
-
 double largest_row_sum(const SparseMatrix& a) {
   return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
 }
@@ -103,39 +98,6 @@ StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& optio
   return mode;
 }
 
-}  // namespace
-
-// With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
-LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
-  if (is_diagonal(mass)) return symmetric_operator(scaled(a, inverse_root(mass)));
-  const auto factor = std::make_shared<Cholesky>(mass);
-  return {a.rows(), [factor, &a](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-            out = factor->permutationPinv() * factor->matrixU().solve(in);
-            out = factor->permutationP() * (a * out).eval();
-            factor->matrixL().solveInPlace(out);
-          }};
-}
-
-LinearOperator scaled_stiffness(const StructuralMatrices& s) { return mass_scaled(s.stiffness, s.mass); }
-
-Eigen::MatrixXd as_dense(const LinearOperator& a) {
-  Eigen::MatrixXd matrix(a.size, a.size);
-  Eigen::VectorXd column;
-  for (Eigen::Index j = 0; j < a.size; ++j) {
-    a.apply(Eigen::VectorXd::Unit(a.size, j), column);
-    matrix.col(j) = column;
-  }
-  return matrix;
-}
-
-Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a) { return 0.5 * (a + a.transpose()); }
-
-bool is_below(const StructuralMatrices& s, double sigma) {
-  return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);
-}
-
-namespace {
-
 // Of M^-½ A M^-½.
 double largest_scaled_entry(const SparseMatrix& a, const Eigen::VectorXd& inverse_root) {
   double largest = 0;
@@ -166,6 +128,35 @@ void expect_within_double_precision(const StructuralMatrices& s) {
 }
 
 }  // namespace
+
+// With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
+LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
+  if (is_diagonal(mass)) return symmetric_operator(scaled(a, inverse_root(mass)));
+  const auto factor = std::make_shared<Cholesky>(mass);
+  return {a.rows(), [factor, &a](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+            out = factor->permutationPinv() * factor->matrixU().solve(in);
+            out = factor->permutationP() * (a * out).eval();
+            factor->matrixL().solveInPlace(out);
+          }};
+}
+
+LinearOperator scaled_stiffness(const StructuralMatrices& s) { return mass_scaled(s.stiffness, s.mass); }
+
+Eigen::MatrixXd as_dense(const LinearOperator& a) {
+  Eigen::MatrixXd matrix(a.size, a.size);
+  Eigen::VectorXd column;
+  for (Eigen::Index j = 0; j < a.size; ++j) {
+    a.apply(Eigen::VectorXd::Unit(a.size, j), column);
+    matrix.col(j) = column;
+  }
+  return matrix;
+}
+
+Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a) { return 0.5 * (a + a.transpose()); }
+
+bool is_below(const StructuralMatrices& s, double sigma) {
+  return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);
+}
 
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
   expect_within_double_precision(s);

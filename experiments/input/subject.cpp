@@ -117,6 +117,15 @@ auto naming(const std::string& source, Build build) {
   }
 }
 
+// What a scene at rest has of elastic energy after 10^12 rounding errors, more than there are steps in a run:
+// they walk 10^6 of them away.
+double rounding_energy(Scene& scene, Vector x) {
+  const double off = 1e6 * std::numeric_limits<double>::epsilon() * x.cwiseAbs().maxCoeff();
+  std::mt19937 random(1);
+  for (double& coordinate : x) coordinate += random() % 2 == 0 ? off : -off;
+  return scene.elastic_energy(x);
+}
+
 }  // namespace
 
 bool is_scene_file(const std::string& path) { return ends_with(path, ".json"); }
@@ -265,15 +274,6 @@ State<Vector> Subject::initial_state(std::uint64_t seed) {
   for (double& entry : state.x) entry = uniform(random);
   state.x /= std::sqrt(2 * matrices_->kinetic_energy(state.x));  // xᵀMx = 1
   return state;
-}
-
-// What a scene at rest has of elastic energy after 10^12 rounding errors, more than there are steps in a run:
-// they walk 10^6 of them away.
-double rounding_energy(Scene& scene, Vector x) {
-  const double off = 1e6 * std::numeric_limits<double>::epsilon() * x.cwiseAbs().maxCoeff();
-  std::mt19937 random(1);
-  for (double& coordinate : x) coordinate += random() % 2 == 0 ? off : -off;
-  return scene.elastic_energy(x);
 }
 
 EnergyWatch Subject::energy_watch(const State<Vector>& start) {

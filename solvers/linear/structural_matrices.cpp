@@ -82,15 +82,14 @@ bool is_definite(const SparseMatrix& a) {
   const Eigen::VectorXd diagonal = a.diagonal();
   if (!(diagonal.array() > 0).all()) return false;
   const Eigen::VectorXd d = diagonal.cwiseSqrt().cwiseInverse();
-  SparseMatrix scaled = d.asDiagonal() * a;
-  scaled = scaled * d.asDiagonal();
-  Eigen::SimplicialLLT<SparseMatrix> factor(scaled);
+  const SparseMatrix unit = scaled(a, d);
+  Eigen::SimplicialLLT<SparseMatrix> factor(unit);
   if (factor.info() != Eigen::Success) return false;
   const Eigen::Index entries = SparseMatrix(factor.matrixL()).nonZeros() + 2 * a.rows();
   SparseMatrix shift(a.rows(), a.cols());
   shift.setIdentity();
   shift *= std::numeric_limits<double>::epsilon() * static_cast<double>(entries);
-  factor.factorize(scaled - shift);
+  factor.factorize(unit - shift);
   return factor.info() == Eigen::Success;
 }
 
@@ -156,6 +155,11 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
 }
 
 }  // namespace
+
+SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
+  const SparseMatrix rows = d.asDiagonal() * a;
+  return rows * d.asDiagonal();
+}
 
 bool is_diagonal(const SparseMatrix& a) {
   for (Eigen::Index j = 0; j < a.outerSize(); ++j)

@@ -29,6 +29,9 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
                                         const SparseMatrix& damping = {});
 
+/// diag(d) A diag(d).
+SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d);
+
 /// Whether nothing is stored off the diagonal.
 bool is_diagonal(const SparseMatrix& a);
 

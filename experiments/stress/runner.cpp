@@ -197,7 +197,8 @@ StressResult run_stress(const StressCase& c, std::string_view method, const std:
   const auto refused = [&](const std::exception& error) {
     result.outcome = StressOutcome::refused;
     result.detail = error.what();
-    if (result.detail.starts_with(folder + "/")) result.detail.erase(0, folder.size() + 1);
+    for (std::size_t at; (at = result.detail.find(folder + "/")) != std::string::npos;)
+      result.detail.erase(at, folder.size() + 1);
   };
   try {
     Subject subject(c.write(folder));

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "experiments/measured_run.h"
+#include "experiments/runs/measured_run.h"
 
 namespace springstab {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "experiments/figure_list.h"
-#include "experiments/interrupt.h"
+#include "experiments/command/interrupt.h"
+#include "experiments/studies/figure_list.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {

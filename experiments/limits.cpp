@@ -5,11 +5,11 @@
 #include <map>
 #include <vector>
 
-#include "analysis/general_damping.h"
-#include "analysis/transient_growth.h"
-#include "experiments/experiments.h"
-#include "experiments/mesh_report.h"
-#include "experiments/output.h"
+#include "analysis/limits/general_damping.h"
+#include "analysis/limits/transient_growth.h"
+#include "experiments/command/options.h"
+#include "experiments/command/output.h"
+#include "experiments/inputs/mesh_report.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {

@@ -1,9 +1,9 @@
 // `springstab methods`: what each method is, all of it computed from its step.
 #include <iostream>
 
-#include "analysis/stability_region.h"
-#include "experiments/experiments.h"
-#include "experiments/output.h"
+#include "analysis/regions/stability_region.h"
+#include "experiments/command/options.h"
+#include "experiments/command/output.h"
 #include "solvers/counting.h"
 #include "solvers/linear/matrix_system.h"
 

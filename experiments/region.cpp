@@ -6,10 +6,10 @@
 #include <iostream>
 #include <set>
 
-#include "analysis/amplification.h"
-#include "experiments/experiments.h"
-#include "experiments/output.h"
-#include "experiments/parallel.h"
+#include "analysis/regions/amplification.h"
+#include "experiments/command/options.h"
+#include "experiments/command/output.h"
+#include "experiments/studies/parallel.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/general_damping.h"
-#include "analysis/transient_growth.h"
-#include "experiments/output.h"
+#include "analysis/limits/general_damping.h"
+#include "analysis/limits/transient_growth.h"
+#include "experiments/command/output.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "experiments/experiments.h"
-#include "experiments/input/subject.h"
-#include "experiments/output.h"
+#include "experiments/command/options.h"
+#include "experiments/command/output.h"
+#include "experiments/inputs/subject.h"
 #include "solvers/simulation.h"
 
 namespace springstab {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/transition_operator.h"
+#include "analysis/spectra/transition_operator.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/scene/spring_cloth.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/output.h"
+#include "experiments/command/output.h"
 
 namespace springstab::test {
 

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/general_damping.h"
-#include "analysis/generator_spectrum.h"
-#include "analysis/rigid_motions.h"
-#include "analysis/step_magnitude.h"
+#include "analysis/limits/general_damping.h"
+#include "analysis/proofs/step_magnitude.h"
+#include "analysis/spectra/generator_spectrum.h"
+#include "analysis/spectra/rigid_motions.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "solvers/scene/every_pose.h"

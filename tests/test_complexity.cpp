@@ -6,11 +6,11 @@
 #include <random>
 #include <vector>
 
-#include "analysis/power_iteration.h"
-#include "analysis/power_law.h"
-#include "analysis/spectrum.h"
-#include "experiments/complexity/complexity_studies.h"
-#include "experiments/complexity/k0_watch.h"
+#include "analysis/errors/power_law.h"
+#include "analysis/spectra/power_iteration.h"
+#include "analysis/spectra/spectrum.h"
+#include "experiments/studies/complexity/complexity_studies.h"
+#include "experiments/studies/complexity/k0_watch.h"
 #include "solvers/stepper.h"
 
 using namespace springstab;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/spectrum.h"
-#include "experiments/input/subject.h"
-#include "experiments/mesh_report.h"
+#include "analysis/spectra/spectrum.h"
+#include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/subject.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/obj.h"
 #include "solvers/scene/mesh_repair.h"

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "allocation_counter.h"
-#include "analysis/amplification.h"
+#include "analysis/regions/amplification.h"
 #include "oracles.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/methods/list.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/input/subject.h"
-#include "experiments/mesh_report.h"
+#include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/subject.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/obj.h"
 #include "tests/command.h"

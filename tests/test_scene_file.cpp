@@ -7,7 +7,7 @@
 #include <fstream>
 #include <functional>
 
-#include "experiments/input/scene_description.h"
+#include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
 
 using namespace springstab;

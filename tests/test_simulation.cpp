@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/method_limits.h"
+#include "analysis/limits/method_limits.h"
 #include "experiments/step_chooser.h"
 #include "solvers/counting.h"
 #include "solvers/scene/scene.h"

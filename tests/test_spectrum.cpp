@@ -15,12 +15,12 @@
 #include <thread>
 #include <vector>
 
-#include "analysis/arpack.h"
-#include "analysis/chebyshev_filter.h"
-#include "analysis/definiteness.h"
-#include "analysis/method_limits.h"
-#include "analysis/spectrum.h"
-#include "analysis/transition_operator.h"
+#include "analysis/limits/method_limits.h"
+#include "analysis/proofs/definiteness.h"
+#include "analysis/spectra/arpack.h"
+#include "analysis/spectra/chebyshev_filter.h"
+#include "analysis/spectra/spectrum.h"
+#include "analysis/spectra/transition_operator.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"

@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
-#include "analysis/amplification.h"
-#include "analysis/polynomial.h"
-#include "analysis/stability_region.h"
+#include "analysis/regions/amplification.h"
+#include "analysis/regions/polynomial.h"
+#include "analysis/regions/stability_region.h"
 #include "oracles.h"
 #include "solvers/stepper.h"
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/amplification.h"
-#include "analysis/step_limits.h"
+#include "analysis/limits/step_limits.h"
+#include "analysis/regions/amplification.h"
 #include "solvers/stepper.h"
 
 using namespace springstab;

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "experiments/stress/stress.h"
+#include "experiments/studies/stress/stress.h"
 
 using namespace springstab;
 

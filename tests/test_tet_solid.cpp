@@ -12,7 +12,7 @@
 #include <set>
 #include <vector>
 
-#include "analysis/spectrum.h"
+#include "analysis/spectra/spectrum.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/tet_file.h"
 #include "solvers/scene/mesh_repair.h"

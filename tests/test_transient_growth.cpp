@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "analysis/transient_growth.h"
+#include "analysis/limits/transient_growth.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/stepper.h"
 

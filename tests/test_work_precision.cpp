@@ -11,12 +11,12 @@
 #include <sstream>
 #include <string>
 
-#include "analysis/adaptive_integrator.h"
-#include "analysis/linear_motion.h"
-#include "experiments/precision/contest.h"
-#include "experiments/precision/contest_figure.h"
-#include "experiments/precision/long_runs.h"
-#include "experiments/precision/scenes.h"
+#include "analysis/errors/adaptive_integrator.h"
+#include "analysis/errors/linear_motion.h"
+#include "experiments/studies/precision/contest.h"
+#include "experiments/studies/precision/contest_figure.h"
+#include "experiments/studies/precision/long_runs.h"
+#include "experiments/studies/precision/scenes.h"
 #include "solvers/io/input_error.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/spring_chain.h"

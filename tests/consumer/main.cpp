@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "analysis/amplification.h"
+#include "analysis/regions/amplification.h"
 #include "solvers/stepper.h"
 
 struct UnitOscillators final : springstab::LinearSystem {

@@ -1,0 +1,436 @@
+// Reads a scene file: JSON into a small tree whose values know their lines, the tree into a SceneDescription.
+// The JSON library's own tree would take the last of duplicate keys and forget the lines, so only its parser
+// is used, through its events.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "experiments/inputs/scene_description.h"
+#include "solvers/io/input_error.h"
+#include "solvers/io/text_file.h"
+
+namespace springstab {
+namespace {
+
+// --- JSON with lines ---
+
+/// A JSON value, the line it stands on, and the name it goes by in messages.
+struct Json {
+  enum class Kind { literal, number, string, array, object };
+  Kind kind = Kind::literal;
+  std::string text;   // of a string; of a number (shortened) or literal as it was written
+  double number = 0;  // finite
+  std::string key{};  // of an object's member
+  long key_line = 0;
+  std::string name;  // 'gravity', or 'gravity'[1] for an entry of an array
+  long line = 0;
+  std::vector<Json> items{};  // entries of an array, members of an object
+};
+
+/// Walks over text and keeps the line of the character read last. The parser reads one character beyond a
+/// number, so a line break counts only once something after it was read.
+class LineCounter {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  LineCounter(const char* at, long* line) : at_(at), line_(line) {}
+  reference operator*() const { return *at_; }
+  LineCounter& operator++() {
+    if (after_break_) ++*line_;
+    after_break_ = *at_++ == '\n';
+    return *this;
+  }
+  bool operator==(const LineCounter& other) const { return at_ == other.at_; }
+  bool operator!=(const LineCounter& other) const { return at_ != other.at_; }
+
+ private:
+  const char* at_;
+  long* line_;
+  bool after_break_ = false;
+};
+
+/// Builds the tree from the parser's events.
+class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  TreeBuilder(const std::string& source, const long& line) : source_(source), line_(line) {}
+  Json take_root() { return std::move(root_); }
+
+  bool null() override { return add(Json::Kind::literal, "null"); }
+  bool boolean(bool value) override { return add(Json::Kind::literal, value ? "true" : "false"); }
+  bool number_integer(number_integer_t value) override {
+    return add(Json::Kind::number, std::to_string(value), static_cast<double>(value));
+  }
+  bool number_unsigned(number_unsigned_t value) override {
+    return add(Json::Kind::number, std::to_string(value), static_cast<double>(value));
+  }
+  bool number_float(number_float_t value, const string_t& text) override {
+    return add(Json::Kind::number, shortened(text), value);
+  }
+  bool string(string_t& text) override { return add(Json::Kind::string, text); }
+  bool binary(binary_t&) override { return false; }  // not in JSON text
+
+  bool start_object(std::size_t) override { return open(Json::Kind::object); }
+  bool key(string_t& text) override {
+    key_ = text;
+    key_line_ = line_;
+    return true;
+  }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t) override { return open(Json::Kind::array); }
+  bool end_array() override { return close(); }
+
+  bool parse_error(std::size_t, const std::string& last_token,
+                   const nlohmann::json::exception& error) override {
+    if (dynamic_cast<const nlohmann::json::out_of_range*>(&error))
+      fail("the number " + shortened(last_token) + " is out of range, expected a finite one");
+    std::string reason = error.what();  // "[id] parse error at ...: syntax error while parsing ... - reason"
+    if (const auto dash = reason.find(" - "); dash != std::string::npos) reason.erase(0, dash + 3);
+    if (const auto token = reason.find('\'' + last_token + '\''); token != std::string::npos)
+      reason.replace(token, last_token.size() + 2, springstab::quoted(last_token));
+    std::replace(reason.begin(), reason.end(), ';', ',');
+    // "unexpected end of input" alone does not say what was expected.
+    if (reason.find("expected ", reason.find(' ')) == std::string::npos)
+      reason += ", expected JSON, which has no comments";
+    fail("syntax error: " + reason);
+  }
+
+ private:
+  static std::string shortened(const std::string& number) {
+    return number.size() > 40 ? number.substr(0, 40) + "..." : number;
+  }
+
+  [[noreturn]] void fail(const std::string& message) const { throw InputError(source_, line_, message); }
+
+  bool add(Json::Kind kind, std::string text, double number = 0) {
+    Json value{.kind = kind, .text = std::move(text), .number = number, .name = "the scene", .line = line_};
+    if (open_.empty()) {
+      root_ = std::move(value);
+      return true;
+    }
+    Json& parent = *open_.back();
+    if (parent.kind == Json::Kind::object) {
+      value.key = key_;
+      value.key_line = key_line_;
+      value.name = springstab::quoted(key_);
+    } else {
+      value.name = parent.name + '[' + std::to_string(parent.items.size()) + ']';
+    }
+    parent.items.push_back(std::move(value));
+    return true;
+  }
+
+  bool open(Json::Kind kind) {
+    constexpr std::size_t deepest = 16;  // a scene needs three; the tree's destructor is recursive
+    if (open_.size() == deepest)
+      fail("values are nested too deeply, expected at most " + std::to_string(deepest));
+    add(kind, kind == Json::Kind::array ? "an array" : "an object");
+    open_.push_back(open_.empty() ? &root_ : &open_.back()->items.back());
+    return true;
+  }
+
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  const std::string& source_;
+  const long& line_;
+  Json root_;
+  std::vector<Json*> open_;  // from the root to the innermost; these do not move while they are open
+  std::string key_;          // of the member to come
+  long key_line_ = 0;
+};
+
+Json parse_json(const std::string& source, std::string_view text) {
+  constexpr std::size_t most = std::size_t{1} << 24;  // two bytes can become a value of 150
+  if (text.size() > most)
+    throw InputError(source, 0,
+                     "a scene of " + std::to_string(text.size()) +
+                         " bytes, expected at most 16 MB; pins can be ranges such as \"0-999\"");
+  long line = 1;
+  TreeBuilder builder(source, line);
+  nlohmann::json::sax_parse(LineCounter(text.data(), &line), LineCounter(text.data() + text.size(), &line),
+                            &builder);
+  return builder.take_root();
+}
+
+// --- the schema ---
+
+class SceneReader {
+ public:
+  explicit SceneReader(const std::string& source) : source_(source) {}
+
+  SceneDescription scene(const Json& json) const {
+    expect_members(json, {"geometry", "material", "pins", "gravity", "damping", "initial"});
+    SceneDescription scene;
+    const Json* geometry_json = find(json, "geometry");
+    if (!geometry_json)
+      fail(json.line,
+           "'geometry' is missing, expected {\"grid\": [rows, columns]} or {\"mesh\": \"cloth.obj\"}");
+    scene.geometry = geometry(*geometry_json);
+    const Json* material_json = find(json, "material");
+    scene.material = material_json ? material(*material_json, scene.geometry)
+                                   : named_material("default", scene.geometry, source_, json.line);
+    scene.pins.source = source_;
+    if (const Json* value = find(json, "pins")) scene.pins = pins(*value);
+    if (const Json* value = find(json, "gravity")) scene.gravity = vector(*value);
+    if (const Json* value = find(json, "damping")) scene.damping = damping(*value);
+    if (const Json* value = find(json, "initial")) scene.initial = initial(*value);
+    return scene;
+  }
+
+ private:
+  enum class Sign { any, not_negative, positive };
+
+  [[noreturn]] void fail(long line, const std::string& message) const {
+    throw InputError(source_, line, message);
+  }
+
+  [[noreturn]] void wrong(const Json& json, const std::string& expected) const {
+    const std::string shown = json.kind == Json::Kind::string ? springstab::quoted(json.text) : json.text;
+    fail(json.line, json.name + " is " + shown + ", expected " + expected);
+  }
+
+  /// Nothing but these keys, none of them twice.
+  void expect_members(const Json& object, const std::vector<std::string_view>& known) const {
+    if (object.kind != Json::Kind::object) wrong(object, "an object");
+    for (auto member = object.items.begin(); member != object.items.end(); ++member) {
+      if (std::find(known.begin(), known.end(), member->key) == known.end())
+        fail(member->key_line, "unknown key " + member->name + " in " + object.name + ", " +
+                                   expected_one_of(member->key, known));
+      const auto same = [&](const Json& other) { return other.key == member->key; };
+      const auto first = std::find_if(object.items.begin(), member, same);
+      if (first != member)
+        fail(member->key_line, "duplicate key " + member->name + ", expected it once (it stands on line " +
+                                   std::to_string(first->key_line) + " too)");
+    }
+  }
+
+  static const Json* find(const Json& object, std::string_view key) {
+    const auto member = std::find_if(object.items.begin(), object.items.end(),
+                                     [&](const Json& item) { return item.key == key; });
+    return member == object.items.end() ? nullptr : &*member;
+  }
+
+  double number(const Json& json, Sign sign) const {
+    const bool good = json.kind == Json::Kind::number && (sign == Sign::any || json.number > 0 ||
+                                                          (sign == Sign::not_negative && json.number == 0));
+    if (!good)
+      wrong(json, sign == Sign::any            ? "a number"
+                  : sign == Sign::not_negative ? "zero or a positive number"
+                                               : "a positive number");
+    return json.number;
+  }
+
+  int integer(const Json& json, int least, int most) const {
+    if (json.kind != Json::Kind::number || json.number < least || json.number > most ||
+        json.number != std::trunc(json.number))
+      wrong(json, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    return static_cast<int>(json.number);
+  }
+
+  Eigen::Vector3d vector(const Json& json, Sign sign = Sign::any) const {
+    if (json.kind != Json::Kind::array) wrong(json, "an array of three numbers");
+    if (json.items.size() != 3)
+      fail(json.line,
+           json.name + " has " + std::to_string(json.items.size()) + " entries, expected three numbers");
+    return {number(json.items[0], sign), number(json.items[1], sign), number(json.items[2], sign)};
+  }
+
+  template <class T>
+  void read_number(const Json& object, std::string_view key, Sign sign, T& value) const {
+    if (const Json* member = find(object, key)) value = number(*member, sign);
+  }
+
+  void read_per_kind(const Json& object, PerKind& values) const {
+    read_number(object, "structural", Sign::not_negative, values.structural);
+    read_number(object, "shear", Sign::not_negative, values.shear);
+    read_number(object, "bending", Sign::not_negative, values.bending);
+  }
+
+  Geometry geometry(const Json& json) const {
+    expect_members(json, {"grid", "spacing", "mesh"});
+    const Json *grid_json = find(json, "grid"), *mesh = find(json, "mesh"), *spacing = find(json, "spacing");
+    if (!grid_json == !mesh)
+      fail(json.line, "'geometry' has " + std::string(mesh ? "both" : "neither") +
+                          " 'grid' and 'mesh', expected one of them");
+    if (grid_json) return grid(json, *grid_json);
+    if (spacing) fail(spacing->key_line, "'spacing' stands beside 'mesh', expected it with 'grid' only");
+    if (mesh->kind != Json::Kind::string || mesh->text.empty()) wrong(*mesh, "the path of a mesh file");
+    return (std::filesystem::path(source_).parent_path() / mesh->text).string();
+  }
+
+  Grid grid(const Json& geometry, const Json& json) const {
+    if (json.kind != Json::Kind::array) wrong(json, "an array [rows, columns]");
+    if (json.items.size() != 2)
+      fail(json.line,
+           "'grid' has " + std::to_string(json.items.size()) + " entries, expected [rows, columns]");
+    Grid grid;
+    grid.rows = integer(json.items[0], 1, max_particles);
+    grid.columns = integer(json.items[1], 1, max_particles);
+    read_number(geometry, "spacing", Sign::positive, grid.spacing);
+    check(grid, source_, json.line);
+    return grid;
+  }
+
+  std::string text(const Json& json, const std::string& expected) const {
+    if (json.kind != Json::Kind::string) wrong(json, expected);
+    return json.text;
+  }
+
+  Material material(const Json& json, const Geometry& geometry) const {
+    if (json.kind == Json::Kind::string) return named_material(json.text, geometry, source_, json.line);
+    if (json.kind != Json::Kind::object) wrong(json, "the name of a material or an object");
+    Material start = named_material("default", geometry, source_, json.line);
+    if (const Json* model = find(json, "model")) {
+      const std::vector<std::string_view> known =
+          is_solid(geometry) ? std::vector<std::string_view>{"tetrahedra"}
+                             : std::vector<std::string_view>{"springs", "baraff-witkin"};
+      const std::string expected =
+          is_solid(geometry) ? "'tetrahedra' for such a mesh" : "'springs' or 'baraff-witkin'";
+      const std::string name = text(*model, expected);
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        wrong(*model, expected_one_of(name, known).substr(std::string("expected ").size()));
+      if (name == "baraff-witkin") start = ClothMaterial{};
+    }
+    if (const Json* name = find(json, "name")) {
+      const std::size_t model = start.index();
+      start = named_material(text(*name, "the name of a material"), geometry, source_, name->line);
+      if (find(json, "model") && start.index() != model) wrong(*name, "the name of a material of that model");
+    }
+    return std::visit([&](auto material) -> Material { return read_material(json, material); }, start);
+  }
+
+  template <class M>
+  void read_weight(const Json& json, M& material) const {
+    read_number(json, "area_density", Sign::positive, material.area_density);
+    if (const Json* mass = find(json, "particle_mass"))
+      material.particle_mass = number(*mass, Sign::positive);
+  }
+
+  SpringMaterial read_material(const Json& json, SpringMaterial material) const {
+    expect_members(json, {"model", "name", "area_density", "particle_mass", "structural", "shear", "bending",
+                          "damping"});
+    read_weight(json, material);
+    read_per_kind(json, material.stiffness);
+    if (const Json* damping = find(json, "damping")) {
+      expect_members(*damping, {"structural", "shear", "bending"});
+      read_per_kind(*damping, material.damping);
+      check(material, source_, damping->line);
+    }
+    return material;
+  }
+
+  /// A number for both directions of the cloth, or [along u, along v].
+  void read_directions(const Json& object, std::string_view key, Sign sign, double& u, double& v) const {
+    const Json* member = find(object, key);
+    if (!member) return;
+    if (member->kind != Json::Kind::array) {
+      u = v = number(*member, sign);
+      return;
+    }
+    if (member->items.size() != 2)
+      fail(member->line, member->name + " has " + std::to_string(member->items.size()) +
+                             " entries, expected a number or [along u, along v]");
+    u = number(member->items[0], sign);
+    v = number(member->items[1], sign);
+  }
+
+  void read_per_condition(const Json& object, PerCondition& values) const {
+    read_directions(object, "stretch", Sign::not_negative, values.stretch_u, values.stretch_v);
+    read_number(object, "shear", Sign::not_negative, values.shear);
+    read_number(object, "bending", Sign::not_negative, values.bending);
+  }
+
+  ClothMaterial read_material(const Json& json, ClothMaterial material) const {
+    expect_members(json, {"model", "name", "area_density", "particle_mass", "stretch", "shear", "bending",
+                          "damping", "area_scaling", "rest_stretch", "texture_unit"});
+    read_weight(json, material);
+    read_per_condition(json, material.stiffness);
+    if (const Json* scaling = find(json, "area_scaling")) {
+      const std::string name = text(*scaling, "'continuum' or 'original'");
+      if (name != "continuum" && name != "original") wrong(*scaling, "'continuum' or 'original'");
+      material.scaling = name == "original" ? AreaScaling::original : AreaScaling::continuum;
+    }
+    read_directions(json, "rest_stretch", Sign::positive, material.rest_stretch.u, material.rest_stretch.v);
+    if (const Json* unit = find(json, "texture_unit")) material.texture_unit = number(*unit, Sign::positive);
+    if (const Json* damping = find(json, "damping")) {
+      expect_members(*damping, {"stretch", "shear", "bending"});
+      read_per_condition(*damping, material.damping);
+      check(material, source_, damping->line);
+    }
+    return material;
+  }
+
+  void read_per_kind(const Json& object, PerSolidKind& values) const {
+    read_number(object, "edge", Sign::not_negative, values.edge);
+    read_number(object, "altitude", Sign::not_negative, values.altitude);
+  }
+
+  SolidMaterial read_material(const Json& json, SolidMaterial material) const {
+    expect_members(json, {"model", "name", "density", "particle_mass", "edge", "altitude", "damping"});
+    read_number(json, "density", Sign::positive, material.density);
+    if (const Json* mass = find(json, "particle_mass"))
+      material.particle_mass = number(*mass, Sign::positive);
+    read_per_kind(json, material.stiffness);
+    if (const Json* damping = find(json, "damping")) {
+      expect_members(*damping, {"edge", "altitude"});
+      read_per_kind(*damping, material.damping);
+      check(material, source_, damping->line);
+    }
+    return material;
+  }
+
+  Pins pins(const Json& json) const {
+    if (json.kind == Json::Kind::string) return parse_pins(json.text, source_, json.line);
+    if (json.kind != Json::Kind::array) wrong(json, "a string such as 'first-row' or an array of indices");
+    Pins pins{Pins::Kind::indices, {}, source_, json.line};
+    for (const Json& item : json.items) {
+      const int index = integer(item, 0, max_particles - 1);
+      pins.ranges.push_back({index, index});
+    }
+    pins.ranges = merged(std::move(pins.ranges));
+    return pins;
+  }
+
+  RayleighDescription damping(const Json& json) const {
+    expect_members(json, {"d0", "alpha"});
+    RayleighDescription damping;
+    read_number(json, "d0", Sign::not_negative, damping.d0);
+    const Json* alpha = find(json, "alpha");
+    if (!alpha) return damping;
+    if (alpha->kind == Json::Kind::string && alpha->text == "designed") {
+      damping.alpha.reset();
+    } else {
+      if (alpha->kind == Json::Kind::string) wrong(*alpha, "zero, a positive number or 'designed'");
+      damping.alpha = number(*alpha, Sign::not_negative);
+    }
+    return damping;
+  }
+
+  InitialDescription initial(const Json& json) const {
+    expect_members(json, {"stretch", "velocity"});
+    InitialDescription initial;
+    if (const Json* stretch = find(json, "stretch")) initial.stretch = vector(*stretch, Sign::positive);
+    if (const Json* velocity = find(json, "velocity")) initial.velocity = vector(*velocity);
+    return initial;
+  }
+
+  const std::string& source_;
+};
+
+}  // namespace
+
+SceneDescription parse_scene(const std::string& source, std::string_view text) {
+  return SceneReader(source).scene(parse_json(source, text));
+}
+
+SceneDescription read_scene_file(const std::string& path) { return parse_scene(path, read_text_file(path)); }
+
+}  // namespace springstab

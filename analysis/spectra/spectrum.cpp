@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "analysis/constants.h"
 #include "analysis/proofs/definiteness.h"
 #include "analysis/spectra/chebyshev_filter.h"
 
@@ -18,7 +19,6 @@ namespace {
 using Cholesky = Eigen::SimplicialLLT<SparseMatrix>;
 
 constexpr Eigen::Index nonsymmetric_limit = 400;
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
 Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
@@ -164,7 +164,7 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
   StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op, options)
                       : s.size() <= dense_limit ? dense_spectrum(op)
                                                 : arpack_spectrum(op, options);
-  mode.upper_bound = std::numeric_limits<double>::infinity();
+  mode.upper_bound = infinity;
   return mode;
 }
 

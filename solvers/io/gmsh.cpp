@@ -14,12 +14,12 @@ using Words = std::vector<std::string_view>;
 constexpr std::string_view wanted = "version 1 or 2 in ASCII (gmsh -format msh22 writes it)";
 
 /// Points, lines and surfaces, of any order: what a solid does not need.
-constexpr auto skipped_types =
+constexpr auto skipped_gmsh_types =
     std::to_array<long long>({1, 2, 3, 8, 9, 10, 15, 16, 20, 21, 22, 23, 24, 25, 26, 27, 28});
 
-class Reader {
+class GmshReader {
  public:
-  Reader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
+  GmshReader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
 
   TetMesh read() {
     while (next_words()) {
@@ -95,7 +95,7 @@ class Reader {
                 " words, expected its number, type and nodes");
       at.integer(words_[0]);
       const long long type = at.integer(words_[1]);
-      if (std::ranges::find(skipped_types, type) != skipped_types.end()) return;
+      if (std::ranges::find(skipped_gmsh_types, type) != skipped_gmsh_types.end()) return;
       if (type != 4)
         at.fail("an element of type " + std::to_string(type) +
                 ", expected tetrahedra of first order (type 4)");
@@ -121,6 +121,8 @@ class Reader {
 
 }  // namespace
 
-TetMesh parse_gmsh(const std::string& source, std::string_view text) { return Reader(source, text).read(); }
+TetMesh parse_gmsh(const std::string& source, std::string_view text) {
+  return GmshReader(source, text).read();
+}
 
 }  // namespace springstab

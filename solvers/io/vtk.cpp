@@ -10,7 +10,8 @@ namespace springstab {
 namespace {
 
 /// Points, lines and surfaces, of first and second order: what a solid does not need.
-constexpr auto skipped_types = std::to_array<long long>({1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34});
+constexpr auto skipped_vtk_types =
+    std::to_array<long long>({1, 2, 3, 4, 5, 6, 7, 8, 9, 21, 22, 23, 28, 30, 34});
 constexpr long long tetrahedron = 10;
 
 std::string upper_case(std::string_view word) {
@@ -20,9 +21,9 @@ std::string upper_case(std::string_view word) {
   return upper;
 }
 
-class Reader {
+class VtkReader {
  public:
-  Reader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
+  VtkReader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
 
   TetMesh read() {
     header();
@@ -162,7 +163,7 @@ class Reader {
     check_count(at_, "types of cells", types, static_cast<long long>(cells_.size()));
     for (const Cell& cell : cells_) {
       const long long type = integer("a type of a cell");
-      if (type != tetrahedron && std::ranges::find(skipped_types, type) == skipped_types.end())
+      if (type != tetrahedron && std::ranges::find(skipped_vtk_types, type) == skipped_vtk_types.end())
         at_.fail("a cell of type " + std::to_string(type) + ", expected tetrahedra (type 10)");
       if (type == tetrahedron && cell.count != 4)
         cell.at.fail("a tetrahedron of " + std::to_string(cell.count) + " corners, expected four");
@@ -207,6 +208,6 @@ class Reader {
 
 }  // namespace
 
-TetMesh parse_vtk(const std::string& source, std::string_view text) { return Reader(source, text).read(); }
+TetMesh parse_vtk(const std::string& source, std::string_view text) { return VtkReader(source, text).read(); }
 
 }  // namespace springstab

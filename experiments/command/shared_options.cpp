@@ -1,6 +1,8 @@
 #include "experiments/command/shared_options.h"
 
+#include <filesystem>
 #include <iterator>
+#include <system_error>
 
 #include "solvers/stepper.h"
 
@@ -36,8 +38,16 @@ Option resume_option(bool& resume) {
                 "go on where the same command was interrupted; what it had finished is in --output");
 }
 
+std::string plots_folder() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path here = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  const fs::path installed = (here / SPRINGSTAB_INSTALLED_PLOTS).lexically_normal();
+  return (fs::is_directory(installed, ignored) ? installed : here / "plots").string();
+}
+
 Option plots_option(std::string& plots) {
-  plots = SPRINGSTAB_PLOTS_DIR;
+  plots = plots_folder();
   return Option("--plots", &plots, "folder of the gnuplot scripts").shown_as("DIR").with_default();
 }
 

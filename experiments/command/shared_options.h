@@ -18,7 +18,11 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);
 /// For the commands that keep what they have finished.
 Option resume_option(bool& resume);
 
-/// --plots, with the folder of the gnuplot scripts as default.
+/// Where the gnuplot scripts are: installed, as seen from the running command, else `plots` beside it, as in
+/// a build folder. Not checked.
+std::string plots_folder();
+
+/// --plots, with that folder as default.
 Option plots_option(std::string& plots);
 
 }  // namespace springstab

@@ -7,9 +7,9 @@
 
 #include "analysis/limits/general_damping.h"
 #include "analysis/limits/transient_growth.h"
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/mesh_report.h"
+#include "experiments/limits_options.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {

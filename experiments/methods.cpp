@@ -1,11 +1,13 @@
 // `springstab methods`: what each method is, all of it computed from its step.
+#include <cmath>
 #include <iostream>
 
 #include "analysis/regions/stability_region.h"
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
+#include "experiments/command/subcommand_list.h"
 #include "solvers/counting.h"
 #include "solvers/linear/matrix_system.h"
+#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -20,8 +22,6 @@ long force_evaluations(std::string_view method) {
   make_stepper(method)->step(counting, 0.1, state);
   return counting.counts().force_evaluations;
 }
-
-}  // namespace
 
 int run_methods(const CommonOptions& common) {
   Json list = Json::array();
@@ -56,6 +56,20 @@ int run_methods(const CommonOptions& common) {
                  "Euler without it: the damping that stabilizes it damps nothing.\n";
   }
   return done;
+}
+
+}  // namespace
+
+Subcommand methods_command() {
+  return {.name = "methods",
+          .title = "The methods and their constants",
+          .footer =
+              "Y_max: largest stable Y = h^2 k over all damping, and the X = h d where it is; real axis: "
+              "largest\n"
+              "stable X at Y = 0; imaginary axis: largest stable h*sqrt(k) without damping.\n\n"
+              "example: springstab methods --json",
+          .options = {},
+          .run = run_methods};
 }
 
 }  // namespace springstab

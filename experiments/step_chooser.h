@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/subject.h"
+#include "experiments/simulate_options.h"
 #include "solvers/simulation.h"
 
 namespace springstab {

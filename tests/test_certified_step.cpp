@@ -680,7 +680,7 @@ BOOST_AUTO_TEST_CASE(a_half_plane_is_left_where_its_inequality_fails) {
     const auto any = [&] { return random.uniform(0, 1) < 0.3 ? 0 : random.uniform(-1, 1); };
     const HalfPlane edge{any(), any(), std::abs(any())};
     const ModePoint p{std::abs(any()), std::abs(any())};
-    const double h = first_exit(edge, p);
+    const double h = exit_step(edge, p);
     const auto outside = [&](double step) {
       return edge.x * step * p.d + edge.y * step * step * p.k - edge.bound;
     };

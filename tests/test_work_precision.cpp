@@ -11,8 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "analysis/errors/adaptive_integrator.h"
 #include "analysis/errors/linear_motion.h"
+#include "analysis/gsl/adaptive_integrator.h"
 #include "experiments/studies/precision/contest.h"
 #include "experiments/studies/precision/contest_figure.h"
 #include "experiments/studies/precision/long_runs.h"

@@ -31,8 +31,8 @@ DampingModel classify_damping(const StructuralMatrices& s);
 enum class LimitStatus {
   limited,
   unlimited,  // every step is stable
-  none,       // no positive step is
-  unknown     // not computed for this kind of damping
+  none,       // no positive step is stable
+  unknown     // it was not computed for this kind of damping
 };
 
 /// What h_max comes from: exact (for the given k0), or eigenvalues that may not be all that matter.

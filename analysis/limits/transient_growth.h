@@ -12,7 +12,7 @@ namespace springstab {
 /// √(½ m v² + ½ m k x²): a lower bound of the supremum over all n. ∞ where a power overflows.
 double transient_growth(std::string_view method, double x, double y, long steps = 2000);
 
-/// Of the system of these modes at the step h [s], the same over a sample of them, k_max included. In the
+/// The same of the system of these modes at the step h [s], over a sample of them, k_max included. In the
 /// norm of the energy ‖Aⁿ‖ of the whole system is the largest of its modes', so this too is a lower bound.
 double transient_growth(std::string_view method, const RayleighModes& modes, double h);
 

@@ -78,7 +78,7 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();
-      for (const ModePoint& p : modes) least = std::min(least, first_exit(edge, p));
+      for (const ModePoint& p : modes) least = std::min(least, exit_step(edge, p));
       return least;
     };
     std::sort(fit.edges.begin(), fit.edges.end(),
@@ -88,7 +88,7 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
     if (failed == fit.edges.end()) return h;
     const std::optional<ExtremePoint> p = farthest(*failed, h, stiffening);
     if (!p) return std::nullopt;
-    if (first_exit(*failed, stiffening(*p)) >= h) margin *= 4;  // what rounding and tolerance leave open
+    if (exit_step(*failed, stiffening(*p)) >= h) margin *= 4;  // what rounding and tolerance leave open
     outline_.push_back(*p);
     modes.push_back(stiffening(*p));
   }
@@ -105,7 +105,7 @@ std::optional<double> CertifiedSteps::certified(std::string_view method) {
 std::optional<double> CertifiedSteps::estimated(std::string_view method, const Stiffening& stiffening) {
   return search(method, stiffening, [&](const HalfPlane& edge, double h) {
     const std::optional<ExtremePoint> p = farthest(edge, h, stiffening);
-    return p && first_exit(edge, stiffening(*p)) >= h;
+    return p && exit_step(edge, stiffening(*p)) >= h;
   });
 }
 

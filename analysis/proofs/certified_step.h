@@ -24,7 +24,7 @@ class CertifiedSteps {
   explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
 
   const NumericalRange& range() const { return range_; }
-  /// Of the whole structure; made when first asked for.
+  /// The proofs of the whole structure; made when first asked for.
   DefinitenessProof& proof();
 
   /// A step proved stable; nothing where there is none in the polygons, as for explicit Euler when D is

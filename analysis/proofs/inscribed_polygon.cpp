@@ -18,7 +18,7 @@ constexpr double same = 1e-6;           // points nearer than this are one
 
 }  // namespace
 
-double first_exit(const HalfPlane& half_plane, const ModePoint& p) {
+double exit_step(const HalfPlane& half_plane, const ModePoint& p) {
   const double linear = half_plane.x * std::max(p.d, 0.0), quadratic = half_plane.y * std::max(p.k, 0.0);
   const double c = half_plane.bound;
   if (c == 0) return linear > 0 ? 0 : quadratic > 0 ? -linear / quadratic : infinity;
@@ -141,7 +141,7 @@ PolygonFit InscribedPolygons::fit(const Chain& chain, const std::vector<ModePoin
     std::pair<double, std::size_t> least{infinity, 0};
     for (std::size_t i = 0; i + 1 < at.size(); ++i) {
       const HalfPlane side = edge(chain[at[i]], chain[at[i + 1]]);
-      for (const ModePoint& mode : modes) least = std::min(least, {first_exit(side, mode), i});
+      for (const ModePoint& mode : modes) least = std::min(least, {exit_step(side, mode), i});
     }
     return least;
   };

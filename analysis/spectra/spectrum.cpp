@@ -65,8 +65,8 @@ void set_mode(const LinearOperator& s, std::complex<double> value, const Eigen::
   mode.residual = std::hypot(real.stableNorm(), imaginary.stableNorm());
 }
 
-// Of a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the least
-// real part.
+// For a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the
+// least real part.
 StiffestMode nonsymmetric_spectrum(const LinearOperator& s, const ArpackOptions& options) {
   StiffestMode mode;
   if (s.size > nonsymmetric_limit) {
@@ -98,7 +98,7 @@ StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& optio
   return mode;
 }
 
-// Of M^-½ A M^-½.
+// The largest entry of M^-½ A M^-½, without its sign.
 double largest_scaled_entry(const SparseMatrix& a, const Eigen::VectorXd& inverse_root) {
   double largest = 0;
   for (Eigen::Index j = 0; j < a.outerSize(); ++j)

@@ -26,7 +26,7 @@ void set_damping(Subject& subject, const Heat& heat, const CommonOptions& common
   }
 }
 
-// Of one run; only cpu_seconds differs from one to the next.
+// The result of one run; only cpu_seconds differs from one to the next.
 HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
   Subject subject(describe(heat.drape));
   subject.scene()->set_hessian(Hessian::projected);

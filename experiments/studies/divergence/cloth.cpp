@@ -107,7 +107,8 @@ double k0_growth(Subject& subject, const State<Vector>& start, double k0, double
   return largest;
 }
 
-// Of one method under one damping, which the scene must have by now. k0_growth is left to the caller.
+// The runs of one method under one damping, which the scene must have by now. k0_growth is left to the
+// caller.
 ClothStudy study_case(const std::string& name, Subject& subject, const State<Vector>& start, const Case& c,
                       const ClothStudyOptions& options) {
   Scene& scene = *subject.scene();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/command/enum_name.h"
 #include "experiments/command/output.h"
 #include "experiments/studies/precision/peers.h"
 #include "solvers/stepper.h"
@@ -147,17 +148,11 @@ class Climb {
 }  // namespace
 
 const char* name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::finished:
-      return "finished";
-    case Outcome::diverged:
-      return "diverged";
-    case Outcome::timed_out:
-      return "timed-out";
-    case Outcome::failed:
-      break;
-  }
-  return "failed";
+  static constexpr std::pair<Outcome, const char*> names[] = {{Outcome::finished, "finished"},
+                                                              {Outcome::diverged, "diverged"},
+                                                              {Outcome::timed_out, "timed-out"},
+                                                              {Outcome::failed, "failed"}};
+  return name_in(names, outcome);
 }
 
 Json json_of(const Errors& e) {

@@ -67,8 +67,9 @@ class StepperOf final : public Stepper {
 
  private:
   using Steps = StepsOf<Description, Vector>;
-  static constexpr bool rescales =
-      requires(Steps & s, System & y, State<Vector> & x) { s.change_step(y, 1.0, 1.0, x); };
+  static constexpr bool rescales = requires(Steps & s, System& y, State<Vector>& x) {
+    s.change_step(y, 1.0, 1.0, x);
+  };
 
   MethodInfo info_;
   Steps steps_;

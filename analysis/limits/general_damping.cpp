@@ -205,18 +205,18 @@ void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
 // nothing.
 void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimits& limits) {
   if (!limits.h_certified || s_.size() > shift_invert_limit) return;
-  struct Shift {
+  struct Near {
     double limit;  // [s]
     std::complex<double> mu;
   };
-  std::vector<Shift> shifts;
+  std::vector<Near> shifts;
   for (const ModePoint& p : certified_.outline()) {
     const std::complex<double> root = std::sqrt(std::complex<double>(p.d * p.d - 4 * p.k));
     for (const std::complex<double> mu : {(-p.d + root) / 2.0, (-p.d - root) / 2.0})
       if (mu.imag() >= 0 && std::abs(mu) > 0)
         shifts.push_back({critical_step(method, {mu}).value_or(infinity), mu});
   }
-  std::sort(shifts.begin(), shifts.end(), [](const Shift& p, const Shift& q) { return p.limit < q.limit; });
+  std::sort(shifts.begin(), shifts.end(), [](const Near& p, const Near& q) { return p.limit < q.limit; });
   constexpr std::size_t most_shifts = 3;
   constexpr Eigen::Index modes_a_shift = 8;
   double least = infinity;

@@ -32,13 +32,14 @@ struct MagnitudeSystem {
 
 /// Whether the method's step asks for nothing that MagnitudeSystem has not.
 template <class Description>
-inline constexpr bool has_step_magnitude =
-    requires(StepsOf<Description, Magnitude> steps, MagnitudeSystem& system, State<Magnitude>& state) {
-      steps.step(system, 1.0, state);
-    };
+inline constexpr bool has_step_magnitude = requires(StepsOf<Description, Magnitude> steps,
+                                                    MagnitudeSystem& system, State<Magnitude>& state) {
+  steps.step(system, 1.0, state);
+};
 
 template <class Description>
-std::optional<Eigen::MatrixXd> step_magnitude(const Description& description, const Eigen::MatrixXd& stiffness,
+std::optional<Eigen::MatrixXd> step_magnitude(const Description& description,
+                                              const Eigen::MatrixXd& stiffness,
                                               const Eigen::MatrixXd& damping) {
   if constexpr (has_step_magnitude<Description>) {
     MagnitudeSystem system{stiffness.cwiseAbs(), damping.cwiseAbs()};

@@ -6,7 +6,7 @@
 
 namespace springstab {
 
-double largest_modulus(const Eigen::MatrixXd& a) {
+double matrix_radius(const Eigen::MatrixXd& a) {
   if (!a.allFinite()) return std::numeric_limits<double>::infinity();
   return a.eigenvalues().cwiseAbs().maxCoeff();
 }

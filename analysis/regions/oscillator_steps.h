@@ -59,7 +59,7 @@ Eigen::MatrixXd amplification_at(const Description& description, double x, doubl
 }
 
 /// The largest |λ|; ∞ where an entry is not finite.
-double largest_modulus(const Eigen::MatrixXd& a);
+double matrix_radius(const Eigen::MatrixXd& a);
 
 /// ρ(A) of a method that carries nothing.
 /// λ = m ± √s with m = (a11 + a22)/2, s = ((a11 - a22)/2)² + a12 a21: no cancellation where s is small.
@@ -95,7 +95,7 @@ void radii_of(const Description& description, std::span<const double> x, std::sp
               std::span<double> rho) {
   if (description.info().memory > 0) {
     for (std::size_t i = 0; i < x.size(); ++i)
-      rho[i] = largest_modulus(amplification_at(description, x[i], y[i]));
+      rho[i] = matrix_radius(amplification_at(description, x[i], y[i]));
     return;
   }
   for_each_group(x, y, [&](const Lanes& xs, const Lanes& ys, Eigen::Index first, Eigen::Index count) {
@@ -139,16 +139,15 @@ std::optional<LaneFates> simulate_group(const Description& description, const La
 }
 
 template <class Description>
-void fates_of(const Description& description, std::span<const double> x, std::span<const double> y, long steps,
-              double threshold, std::span<CellFate> fate) {
+void fates_of(const Description& description, std::span<const double> x, std::span<const double> y,
+              long steps, double threshold, std::span<CellFate> fate) {
   const auto simulate = [&](const Lanes& xs, const Lanes& ys) {
     return simulate_group(description, xs, ys, steps, threshold);
   };
   for_each_group(x, y, [&](const Lanes& xs, const Lanes& ys, Eigen::Index first, Eigen::Index count) {
     const std::optional<LaneFates> together = simulate(xs, ys);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const auto alone =
-          together ? std::nullopt : simulate(Lanes::Constant(xs[i]), Lanes::Constant(ys[i]));
+      const auto alone = together ? std::nullopt : simulate(Lanes::Constant(xs[i]), Lanes::Constant(ys[i]));
       fate[static_cast<std::size_t>(first + i)] = together ? (*together)[i]
                                                   : alone  ? (*alone)[i]
                                                            : CellFate::diverged;

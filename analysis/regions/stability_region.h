@@ -135,8 +135,8 @@ class StabilityRegion {
   std::pair<double, double> highest_point(const Piece& piece) const;
 
   std::vector<RationalFunction> amplification_;  // 2x2, row by row
-  std::array<RationalFunction, 3> jury_;  // indexed by Bound
-  std::vector<Piece> all_pieces_;         // of the whole plane
+  std::array<RationalFunction, 3> jury_;         // indexed by Bound
+  std::vector<Piece> all_pieces_;                // of the whole plane
   RegionConstants constants_;
 };
 

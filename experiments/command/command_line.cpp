@@ -5,17 +5,17 @@
 #include <new>
 #include <stdexcept>
 
+#include "analysis/method.h"
 #include "experiments/command/interrupt.h"
 #include "experiments/command/options.h"
 #include "solvers/io/input_error.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
 
 std::string method_names() {
   std::string names;
-  for (const MethodInfo& info : all_methods()) names += (names.empty() ? "" : ", ") + std::string(info.name);
+  for (const Method& each : all_methods()) names += (names.empty() ? "" : ", ") + each.name();
   return names;
 }
 

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "analysis/regions/amplification.h"
-#include "solvers/stepper.h"
+#include "analysis/method.h"
 
 struct UnitOscillators final : springstab::LinearSystem {
   using Vector = springstab::Vector;
@@ -14,8 +13,9 @@ struct UnitOscillators final : springstab::LinearSystem {
   double potential_energy(const Vector& x) override { return 0.5 * x.squaredNorm(); }
   void stiffness_times(const Vector& u, Vector& out) override { out = u; }
   void damping_times(const Vector& u, Vector& out) override { out = 0 * u; }
-  springstab::SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override {
-    out = rhs / (1 + h * h);
+  springstab::SolveReport solve_shifted(const springstab::Shift& shift, const Vector& rhs,
+                                        Vector& out) override {
+    out = rhs / (shift.mass + shift.stiffness);
     return {};
   }
 };
@@ -24,11 +24,11 @@ int main() {
   const double pi = std::acos(-1.0);
   UnitOscillators system;
   springstab::State<springstab::Vector> state{Eigen::Vector3d::Ones(), Eigen::Vector3d::Zero()};
-  const auto rk4 = springstab::make_stepper("rk4");
+  const auto rk4 = springstab::Method("rk4").stepper();
   for (int i = 0; i < 100; ++i)
     if (rk4->step(system, 2 * pi / 100, state) != springstab::StepStatus::done) return 1;
   const double error = (state.x.array() - 1).abs().maxCoeff();
   std::cout << "error after one period " << error << ", one step's matrix\n"
-            << springstab::amplification_matrix("rk4", 0.0, 1.0) << '\n';
+            << springstab::Method("rk4").amplification(0.0, 1.0) << '\n';
   return error < 1e-6 ? 0 : 1;
 }

@@ -19,7 +19,7 @@ long force_evaluations(std::string_view method) {
   MatrixSystem oscillator(prepare(one));
   CountingSystem counting(oscillator);
   State<Vector> state{Vector::Ones(1), Vector::Zero(1)};
-  make_stepper(method)->step(counting, 0.1, state);
+  Method(method).stepper()->step(counting, 0.1, state);
   return counting.counts().force_evaluations;
 }
 
@@ -28,23 +28,23 @@ int run_methods(const CommonOptions& common) {
   if (!common.json)
     std::cout << text("%-26s %5s %6s %9s %14s %14s %9s %12s %12s\n", "method", "order", "forces", "implicit",
                       "Y_max", "at X", "attained", "real axis", "imag. axis");
-  for (const MethodInfo& info : all_methods()) {
-    const RegionConstants& c = stability_region(info.name).constants();
+  for (const Method& each : all_methods()) {
+    const RegionConstants& c = stability_region(each).constants();
     const bool bounded = std::isfinite(c.y_max);
-    list.push_back({{"name", info.name},
-                    {"title", info.title},
-                    {"order", info.order},
-                    {"force_evaluations", force_evaluations(info.name)},
-                    {"implicit", info.implicit},
+    list.push_back({{"name", each.name()},
+                    {"title", each.info().title},
+                    {"order", each.info().order},
+                    {"force_evaluations", force_evaluations(each.name())},
+                    {"implicit", each.info().implicit},
                     {"y_max", number(c.y_max)},
                     {"x_at_y_max", bounded ? number(c.x_at_y_max) : Json()},
                     {"y_max_attained", c.y_max_attained},
                     {"real_interval", number(c.real_interval)},
                     {"imaginary_interval", number(c.imaginary_interval)}});
     if (!common.json)
-      std::cout << text("%-26s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n",
-                        std::string(info.name).c_str(), info.order, force_evaluations(info.name),
-                        info.implicit ? "yes" : "no", c.y_max,
+      std::cout << text("%-26s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n", each.name().c_str(),
+                        each.info().order, force_evaluations(each.name()),
+                        each.info().implicit ? "yes" : "no", c.y_max,
                         bounded ? text("%.11g", c.x_at_y_max).c_str() : "-", c.y_max_attained ? "yes" : "no",
                         c.real_interval, c.imaginary_interval);
   }

@@ -70,7 +70,7 @@ DampingModel classify_damping(const StructuralMatrices& s) {
   return {DampingModel::Kind::general, 0, 0, is_semidefinite(s.damping, s.mass)};
 }
 
-MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
+MethodLimits method_limits(const Method& method, const StiffestMode& k0, const DampingModel& damping,
                            double safety) {
   const StabilityRegion& region = stability_region(method);
   MethodLimits limits;

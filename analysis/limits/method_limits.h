@@ -64,7 +64,7 @@ struct MethodLimits {
 /// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);
 /// the others are unknown here (see general_damping.h), as is everything when k0 did not converge. `safety`
 /// >= 1 acts on the stiffness.
-MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
+MethodLimits method_limits(const Method& method, const StiffestMode& k0, const DampingModel& damping,
                            double safety);
 
 }  // namespace springstab

@@ -62,7 +62,7 @@ std::optional<ExtremePoint> CertifiedSteps::farthest(const HalfPlane& edge, doub
 // The polygon that is best for the known points of W, then an edge that does not hold for all of W, whose
 // farthest point becomes known; until all edges hold.
 template <class Holds>
-std::optional<double> CertifiedSteps::search(std::string_view method, const Stiffening& stiffening,
+std::optional<double> CertifiedSteps::search(const Method& method, const Stiffening& stiffening,
                                              const Holds& holds) {
   if (outline().empty()) return std::nullopt;
   std::vector<ModePoint> modes;
@@ -95,14 +95,14 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
   return std::nullopt;
 }
 
-std::optional<double> CertifiedSteps::certified(std::string_view method) {
+std::optional<double> CertifiedSteps::certified(const Method& method) {
   return search(method, {}, [&](const HalfPlane& edge, double h) {
     DefinitenessProof& by = edge.bound == 0 ? restricted().proof : proof();
     return by.holds(edge.bound, edge.x * h, edge.y * h * h);
   });
 }
 
-std::optional<double> CertifiedSteps::estimated(std::string_view method, const Stiffening& stiffening) {
+std::optional<double> CertifiedSteps::estimated(const Method& method, const Stiffening& stiffening) {
   return search(method, stiffening, [&](const HalfPlane& edge, double h) {
     const std::optional<ExtremePoint> p = farthest(edge, h, stiffening);
     return p && exit_step(edge, stiffening(*p)) >= h;

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
-#include <string>
 
 #include "analysis/constants.h"
-#include "solvers/stepper.h"
+#include "analysis/per_method.h"
 
 namespace springstab {
 namespace {
@@ -170,13 +167,9 @@ PolygonFit InscribedPolygons::fit(const std::vector<ModePoint>& modes) const {
   return best;
 }
 
-const InscribedPolygons& inscribed_polygons(std::string_view method) {
-  static std::mutex mutex;
-  static std::map<std::string, InscribedPolygons, std::less<>> all;
-  const std::lock_guard lock(mutex);
-  const std::string_view name = find_method(method).name;
-  if (const auto known = all.find(name); known != all.end()) return known->second;
-  return all.emplace(std::string(name), InscribedPolygons(stability_region(name))).first->second;
+const InscribedPolygons& inscribed_polygons(const Method& method) {
+  static PerMethod<InscribedPolygons> all;
+  return all.of(method, [&] { return InscribedPolygons(stability_region(method)); });
 }
 
 }  // namespace springstab

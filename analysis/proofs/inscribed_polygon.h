@@ -54,7 +54,7 @@ class InscribedPolygons {
   std::vector<Chain> convex_parts_;
 };
 
-/// Those of that method, computed once.
-const InscribedPolygons& inscribed_polygons(std::string_view method);
+/// Those of that method, computed once (see stability_region).
+const InscribedPolygons& inscribed_polygons(const Method& method);
 
 }  // namespace springstab

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
 #include "analysis/constants.h"
+#include "analysis/per_method.h"
 #include "analysis/regions/region_pieces.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -75,7 +73,16 @@ std::vector<Candidate> candidates(const std::vector<Condition>& jury, double t_m
   return found;
 }
 
-std::array<RationalFunction, 3> jury_conditions(const SymbolicAmplification& a) {
+std::vector<RationalFunction> two_by_two(const Method& method) {
+  if (method.size() > 2)
+    throw std::invalid_argument("method '" + method.name() + "' carries " +
+                                std::to_string(method.info().memory) +
+                                " vectors beyond x and v, expected none: Jury's three inequalities decide "
+                                "2x2 matrices");
+  return method.symbolic_step();
+}
+
+std::array<RationalFunction, 3> jury_conditions(const std::vector<RationalFunction>& a) {
   const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
   return {one - determinant, one - trace + determinant, one + trace + determinant};
 }
@@ -104,8 +111,8 @@ double cosine_point(double left, double right, double angle) {
   return left + (right - left) * 0.5 * (1 - std::cos(angle));
 }
 
-StabilityRegion::StabilityRegion(std::string_view method)
-    : amplification_(symbolic_amplification(method)), jury_(jury_conditions(amplification_)) {
+StabilityRegion::StabilityRegion(const Method& method)
+    : amplification_(two_by_two(method)), jury_(jury_conditions(amplification_)) {
   all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
   constants_ = find_constants();
 }
@@ -249,13 +256,9 @@ bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, 
   return true;
 }
 
-const StabilityRegion& stability_region(std::string_view method) {
-  static std::mutex mutex;
-  static std::map<std::string, StabilityRegion, std::less<>> regions;
-  const std::lock_guard lock(mutex);
-  const std::string_view name = find_method(method).name;
-  if (const auto known = regions.find(name); known != regions.end()) return known->second;
-  return regions.emplace(std::string(name), StabilityRegion(name)).first->second;
+const StabilityRegion& stability_region(const Method& method) {
+  static PerMethod<StabilityRegion> regions;
+  return regions.of(method, [&] { return StabilityRegion(method); });
 }
 
 }  // namespace springstab

@@ -3,7 +3,6 @@
 
 #include <complex>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "analysis/spectra/arpack.h"
@@ -43,7 +42,7 @@ std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::c
 /// estimate, since the eigenvalues carry rounding. Nothing for other methods, and where it hinges on a real
 /// part of rounding's size: 1e-9 of the largest |μ| of these modes or, where they are only some, of
 /// `largest`.
-std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes,
+std::optional<double> critical_step(const Method& method, const std::vector<std::complex<double>>& modes,
                                     double largest = 0);
 
 }  // namespace springstab

@@ -4,13 +4,13 @@
 #include <iterator>
 #include <system_error>
 
-#include "solvers/stepper.h"
+#include "analysis/method.h"
 
 namespace springstab {
 
 std::string method_names() {
   std::string names;
-  for (const MethodInfo& info : all_methods()) names += (names.empty() ? "" : ", ") + std::string(info.name);
+  for (const Method& each : all_methods()) names += (names.empty() ? "" : ", ") + each.name();
   return names;
 }
 

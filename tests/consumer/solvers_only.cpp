@@ -2,9 +2,10 @@
 #include <iostream>
 
 #include "oscillators.h"
+#include "solvers/methods/rk4.h"
 
 int main() {
-  const double error = error_after_a_period("rk4");
+  const double error = error_after_a_period(springstab::make_stepper(springstab::Rk4()));
   std::cout << "error after one period " << error << '\n';
   return error < 1e-6 ? 0 : 1;
 }

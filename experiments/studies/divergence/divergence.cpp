@@ -1,5 +1,6 @@
 // `springstab divergence`: stable regions and limits against what simulations do.
 #include "experiments/studies/divergence/divergence.h"
+#include "analysis/method.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -14,17 +15,16 @@
 #include "experiments/studies/divergence/cloth.h"
 #include "experiments/studies/divergence/examples.h"
 #include "solvers/io/input_error.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
 
-Json compared(const MethodInfo& info, const CommonOptions& common, const DivergenceOptions& options,
+Json compared(const Method& method, const CommonOptions& common, const DivergenceOptions& options,
               const std::string& path) {
-  const CellGrid grid{stability_region(info.name).natural_window(0.15), options.cells, options.cells};
+  const CellGrid grid{stability_region(method).natural_window(0.15), options.cells, options.cells};
   const CellComparison c =
-      compare_cells(info.name, grid, options.steps, common.threads, path, CellsWritten::disagreeing);
-  return {{"method", info.name},
+      compare_cells(method.name(), grid, options.steps, common.threads, path, CellsWritten::disagreeing);
+  return {{"method", method.name()},
           {"cells", c.cells},
           {"steps", c.steps},
           {"diverged", c.diverged},
@@ -37,14 +37,14 @@ Json plane(const CommonOptions& common, const DivergenceOptions& options, Journa
            Progress& progress) {
   Json rows = Json::array();
   long methods = 0;
-  for (const MethodInfo& info : all_methods()) methods += !info.linearized;
-  for (const MethodInfo& info : all_methods()) {
-    if (info.linearized) continue;  // the region of the method inside
-    const std::string method(info.name);
+  for (const Method& each : all_methods()) methods += !each.info().linearized;
+  for (const Method& each : all_methods()) {
+    if (each.info().linearized) continue;  // the region of the method inside
+    const std::string method(each.name());
     const std::string path = options.output.empty() ? "" : options.output + "/divergence_" + method + ".csv";
-    if (journal.has_next(1) && !std::filesystem::exists(path)) compared(info, common, options, path);
+    if (journal.has_next(1) && !std::filesystem::exists(path)) compared(each, common, options, path);
     rows.push_back(
-        journal.piece("cells of " + method, [&] { return compared(info, common, options, path); }));
+        journal.piece("cells of " + method, [&] { return compared(each, common, options, path); }));
     progress.update(0.3 * static_cast<double>(rows.size()) / static_cast<double>(methods));
   }
   return rows;

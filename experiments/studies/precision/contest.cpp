@@ -177,12 +177,12 @@ const ContestSeries& ContestResult::of(const std::string& name) const {
 
 std::vector<Contestant> method_contestants(Problem& problem) {
   std::vector<Contestant> contestants;
-  for (const MethodInfo& info : all_methods()) {
-    const std::optional<double> limit = problem.limit(info.name);
-    const std::string method(info.name);
-    const bool iterates = info.implicit && problem.scene();
+  for (const Method& each : all_methods()) {
+    const std::optional<double> limit = problem.limit(each.name());
+    const std::string method(each.name());
+    const bool iterates = each.info().implicit && problem.scene();
     for (double tolerance : iterates ? std::vector{1e-2, 1e-4, 1e-8} : std::vector{0.}) {
-      const std::string title(info.title);
+      const std::string title(each.info().title);
       contestants.push_back({.name = iterates ? title + text(" (CG %g)", tolerance) : title,
                              .limit = limit,
                              .settings = steps_for(problem, limit),

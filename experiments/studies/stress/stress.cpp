@@ -119,7 +119,7 @@ Json draw_stress(const std::string& base, const CommonOptions& common, const Fig
                          gnuplot_literal(base + "_points.csv") +
                          "; summary=" + gnuplot_literal(summary(results)) + "; ";
   for (std::size_t i = 0; i < methods; ++i)
-    settings += text("method_%zu=", i) + gnuplot_literal(std::string(all_methods()[i].title)) + "; ";
+    settings += text("method_%zu=", i) + gnuplot_literal(all_methods()[i].info().title) + "; ";
   std::vector<std::string> files = draw(options.plots + "/stress.gp", settings, base);
   files.insert(files.end(), {base + ".csv", base + "_points.csv"});
   return {{"files", files}, {"holds", unexpected(results) == 0}, {"summary", summary(results)}};
@@ -135,8 +135,8 @@ std::vector<StressResult> run_catalogue(const std::string& filter, const CommonO
   for (std::size_t i = 0; i < all.size(); ++i) {
     if ((all[i].kind + ", " + all[i].name).find(filter) == std::string::npos) continue;
     std::optional<StiffestMode> k0;
-    for (const MethodInfo& method : all_methods()) {
-      results.push_back(run_stress(all[i], method.name, folder.path(), common, k0));
+    for (const Method& method : all_methods()) {
+      results.push_back(run_stress(all[i], method.name(), folder.path(), common, k0));
       progress.update(static_cast<double>(i) / static_cast<double>(all.size()));
     }
   }

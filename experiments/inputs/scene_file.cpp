@@ -42,9 +42,9 @@ class SceneReader {
   }
 
   [[noreturn]] void wrong(const JsonValue& json, const std::string& expected) const {
-    const std::string shown =
+    const std::string found =
         json.kind == JsonValue::Kind::string ? springstab::quoted(json.text) : json.text;
-    fail(json.line, json.name + " is " + shown + ", expected " + expected);
+    fail(json.line, json.name + " is " + found + ", expected " + expected);
   }
 
   /// Nothing but these keys, none of them twice.

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <map>
 
+#include "analysis/method.h"
 #include "experiments/command/output.h"
 #include "experiments/studies/figure_list.h"
 #include "experiments/studies/gnuplot.h"

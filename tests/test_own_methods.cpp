@@ -7,6 +7,7 @@
 
 #include "analysis/limits/general_damping.h"
 #include "analysis/limits/transient_growth.h"
+#include "analysis/method.h"
 #include "analysis/proofs/inscribed_polygon.h"
 #include "analysis/regions/amplification.h"
 #include "analysis/spectra/spectrum.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "analysis/method.h"
 #include "experiments/runs/measured_run.h"
 
 namespace springstab {

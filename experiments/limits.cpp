@@ -157,7 +157,7 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
 }
 
 // The modes' own damping, or that fitted to the step.
-std::optional<double> growth_at_recommended(std::string_view method, const MethodLimits& limits,
+std::optional<double> growth_at_recommended(const Method& method, const MethodLimits& limits,
                                             const StiffestMode& k0, const DampingModel& damping) {
   if (!limits.recommended || damping.kind == DampingModel::Kind::general) return std::nullopt;
   const double h = *limits.recommended;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/method.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/subject.h"
 #include "experiments/simulate_options.h"

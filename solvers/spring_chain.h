@@ -27,8 +27,8 @@ class SpringChain final : public LinearSystem {
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
-  /// By an LDLᵀ factorization, which is kept while the shift stays the same. It passes over the chain twice and is
-  /// reported as one product.
+  /// By an LDLᵀ factorization, which is kept while the shift stays the same. It passes over the chain twice
+  /// and is reported as one product.
   SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;

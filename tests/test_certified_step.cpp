@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "analysis/limits/general_damping.h"
+#include "analysis/method.h"
 #include "analysis/proofs/step_magnitude.h"
 #include "analysis/spectra/generator_spectrum.h"
 #include "analysis/spectra/rigid_motions.h"

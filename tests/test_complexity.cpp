@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/errors/power_law.h"
+#include "analysis/method.h"
 #include "analysis/spectra/power_iteration.h"
 #include "analysis/spectra/spectrum.h"
 #include "experiments/studies/complexity/complexity_studies.h"

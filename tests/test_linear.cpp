@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
 #include "solvers/linear/block_linear_system.h"
 #include "solvers/linear/matrix_system.h"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
 #include "analysis/spectra/spectrum.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/subject.h"

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "allocation_counter.h"
+#include "analysis/method.h"
 #include "analysis/regions/amplification.h"
 #include "analysis/regions/stability_region.h"
 #include "oracles.h"

@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "analysis/method.h"
 #include "tests/command.h"
 #include "tests/results.h"
 

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/limits/method_limits.h"
+#include "analysis/method.h"
 #include "experiments/step_chooser.h"
 #include "solvers/counting.h"
 #include "solvers/scene/scene.h"

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "analysis/limits/method_limits.h"
+#include "analysis/method.h"
 #include "analysis/proofs/definiteness.h"
 #include "analysis/spectra/arpack.h"
 #include "analysis/spectra/chebyshev_filter.h"

@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "analysis/method.h"
 #include "analysis/regions/amplification.h"
 #include "analysis/regions/polynomial.h"
 #include "analysis/regions/stability_region.h"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analysis/limits/step_limits.h"
+#include "analysis/method.h"
 #include "analysis/regions/amplification.h"
 
 BOOST_AUTO_TEST_SUITE(step_limits)

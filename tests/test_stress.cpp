@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "analysis/method.h"
 #include "experiments/studies/stress/stress.h"
 
 BOOST_AUTO_TEST_SUITE(stress)

@@ -12,6 +12,7 @@
 #include <set>
 #include <vector>
 
+#include "analysis/method.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/tet_file.h"

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "analysis/limits/transient_growth.h"
+#include "analysis/method.h"
 #include "solvers/linear/matrix_system.h"
 
 BOOST_AUTO_TEST_SUITE(transient_growth)

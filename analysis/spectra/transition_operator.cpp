@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-
 namespace springstab {
 
 LinearOperator transition_operator(LinearSystem& system, const Method& method, double h) {

@@ -3,6 +3,7 @@
 #include <ctime>
 #include <fstream>
 
+#include "analysis/method.h"
 #include "commit.h"
 
 namespace springstab {

@@ -77,17 +77,16 @@ SolveReport BlockLinearSystem::solve_shifted(const Shift& shift, const Vector& r
 }
 
 SolveReport BlockLinearSystem::solve_by_cholesky(const Shift& shift, Vector& out) {
-  if (!cholesky_.factorize(shift.mass + shift.damping * damping_.d0, mass_, shift.of_stiffness(damping_.alpha), stiffness_,
-                           shift.damping,
-                           own_damping()))
+  if (!cholesky_.factorize(shift.mass + shift.damping * damping_.d0, mass_,
+                           shift.of_stiffness(damping_.alpha), stiffness_, shift.damping, own_damping()))
     return {.status = StepStatus::not_positive_definite};
   cholesky_.solve(rhs_, out);
   return {.status = out.allFinite() ? StepStatus::done : StepStatus::diverged};
 }
 
 SolveReport BlockLinearSystem::solve_by_block_ssor(const Shift& shift, Vector& out) {
-  if (!ssor_.set(shift.mass + shift.damping * damping_.d0, mass_, shift.of_stiffness(damping_.alpha), stiffness_,
-                           shift.damping, own_damping()))
+  if (!ssor_.set(shift.mass + shift.damping * damping_.d0, mass_, shift.of_stiffness(damping_.alpha),
+                 stiffness_, shift.damping, own_damping()))
     return {.status = StepStatus::not_positive_definite};
   ssor_.transform(rhs_, transformed_rhs_);
   SolveReport report =

@@ -9,7 +9,8 @@
 namespace springstab {
 
 /// Where K or D is not symmetric an implicit step throws std::invalid_argument.
-/// Solves with M and with mM + dD + kK by sparse Cholesky factors; the latter is kept while the shift stays the same.
+/// Solves with M and with mM + dD + kK by sparse Cholesky factors; the latter is kept while the shift stays
+/// the same.
 class MatrixSystem final : public LinearSystem {
  public:
   explicit MatrixSystem(StructuralMatrices matrices);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "analysis/method.h"
 #include "experiments/runs/measured_run.h"
 #include "experiments/step_chooser.h"
 #include "experiments/studies/bench/measure.h"

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 
+#include "analysis/method.h"
 #include "experiments/command/output.h"
 #include "experiments/command/subcommand_list.h"
 #include "experiments/studies/figure_list.h"

@@ -22,6 +22,7 @@ class CertifiedSteps {
  public:
   /// `s`, whose K and D are positive semidefinite, must outlive it.
   explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
+  explicit CertifiedSteps(StructuralMatrices&&, const ArpackOptions& = {}) = delete;
 
   const NumericalRange& range() const { return range_; }
   /// Of the whole structure; made when first asked for.

@@ -90,7 +90,10 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
   Subject subject(options.input);
   print_mesh_notes(subject);
   Problem problem(title_of(options.input), std::move(subject), options.duration, common);
-  if (options.designed_damping) problem.design_damping();
+  if (options.designed_damping) {
+    expect_designable(problem.model());
+    problem.design_damping();
+  }
   if (!options.output.empty()) make_folder(options.output);
   const Json settings{
       {"duration", options.duration},     {"damping", options.designed_damping ? "designed" : "own"},

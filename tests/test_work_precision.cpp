@@ -369,7 +369,7 @@ BOOST_AUTO_TEST_CASE(a_plain_rk4_is_precise_at_its_limit_on_the_uniform_chain) {
   BOOST_REQUIRE(run.trajectory.size() == trajectory_samples + 1u);
   BOOST_TEST(run.counts.force_evaluations == 4 * run.steps);
   Trajectory reference{problem.start()};
-  const LinearMotion motion(problem.structure(), problem.damping().d0, problem.damping().alpha,
+  const LinearMotion motion(problem.matrices(), problem.damping().d0, problem.damping().alpha,
                             problem.start());
   for (int i = 1; i <= trajectory_samples; ++i) reference.push_back(motion.at(i / 16.));
   const Errors errors = errors_of(problem.system(), run.trajectory, reference);

@@ -65,7 +65,7 @@ inline StructuralMatrices matrices(const SpringNet& net, double d0 = 0) {
       d.block<3, 3>(3 * p, 3 * q) += sign * s.damping * axial;
     }
   }
-  for (Eigen::Index i = 0; i < n; ++i) m(i, i) = net.mass[i / 3];
+  m = lumped_mass(net.mass);
   const Eigen::Index r = n - 3;
   d += d0 * m;
   const auto sparse = [&](const Eigen::MatrixXd& a) {

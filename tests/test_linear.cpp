@@ -117,9 +117,7 @@ struct DenseSystem {
   Dense k, m, d;
 
   explicit DenseSystem(BlockLinearSystem& s) : k(s.stiffness().to_sparse()) {
-    Vector mass(s.size());
-    for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = s.mass()[i / 3];
-    m = mass.asDiagonal();
+    m = lumped_mass(s.mass());
     d = s.damping().d0 * m + s.damping().alpha * k;
     if (s.own_damping()) d += Dense(s.own_damping()->to_sparse());
   }
@@ -709,7 +707,7 @@ BOOST_AUTO_TEST_CASE(the_over_relaxed_operator_is_symmetric_with_the_curvature_o
     const BlockSparseMatrix& k = system.stiffness();
     const BlockSparseMatrix* c = system.own_damping();
     Dense h = shift * (Dense(k.to_sparse()) + 0.3 * Dense(c->to_sparse()));
-    for (Eigen::Index i = 0; i < h.rows(); ++i) h(i, i) += 7 * system.mass()[i / 3];
+    h += 7 * Dense(lumped_mass(system.mass()));
     BlockSsor ssor;
     const bool usable = ssor.set(7, system.mass(), shift, k, 0.3 * shift, c);
     if (shift > 0) BOOST_REQUIRE(usable);

@@ -113,9 +113,7 @@ void for_each_pose(const std::function<void(const SpringNet&, const Pose&, Rando
 }
 
 Vector mass_vector(const BlockLinearSystem& linear) {
-  Vector m(linear.size());
-  for (Eigen::Index i = 0; i < m.size(); ++i) m[i] = linear.mass()[i / 3];
-  return m;
+  return springstab::lumped_mass(linear.mass()).diagonal();
 }
 
 /// M a [N].

@@ -11,7 +11,7 @@
 
 #include "analysis/limits/method_limits.h"
 #include "analysis/method.h"
-#include "experiments/step_chooser.h"
+#include "experiments/runs/step_run.h"
 #include "solvers/counting.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"
@@ -63,9 +63,7 @@ BlockLinearSystem& stretched(Scene& scene, int columns) {
 }
 
 StructuralMatrices matrices_of(const BlockLinearSystem& system) {
-  Vector mass(system.size());
-  for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = system.mass()[i / 3];
-  return prepare(system.stiffness().to_sparse(), SparseMatrix(mass.asDiagonal()));
+  return prepare(system.stiffness().to_sparse(), lumped_mass(system.mass()));
 }
 
 double energy(System& system, const State<Vector>& state) {
@@ -492,7 +490,7 @@ BOOST_AUTO_TEST_CASE(the_watch_allows_for_what_stable_steps_may_grow) {
   options.method = "symplectic-euler";
   options.duration = 100;  // the step is hardly shortened to end there
   const CommonOptions common;
-  StepChooser chooser(subject, common, options);
+  StepChooser chooser(subject, step_options(common, options));
   chooser.first_plan().value();
   const double half = std::sqrt(4 / 1.5) / 2;
   BOOST_TEST(chooser.watch(subject.initial_state(1)).slack == std::sqrt((1 + half) / (1 - half)),
@@ -515,7 +513,7 @@ BOOST_AUTO_TEST_CASE(rounding_at_rest_is_no_divergence) {
         options.method = method.name();
         options.duration = 0.5;
         const CommonOptions common;
-        StepChooser chooser(subject, common, options);
+        StepChooser chooser(subject, step_options(common, options));
         const StepPlan plan = chooser.first_plan().value();
         const State<Vector> start = subject.initial_state(1);
         State<Vector> state = start;
@@ -544,7 +542,7 @@ BOOST_AUTO_TEST_CASE(a_linearized_run_that_goes_wrong_is_undone_and_saved) {
     options.method = method;
     options.duration = 0.5;
     options.step = step;
-    StepChooser chooser(subject, common, options);
+    StepChooser chooser(subject, step_options(common, options));
     const StepPlan plan = chooser.first_plan().value();
     State<Vector> state = subject.initial_state(1);
     const EnergyWatch watch = chooser.watch(state);
@@ -556,7 +554,7 @@ BOOST_AUTO_TEST_CASE(a_linearized_run_that_goes_wrong_is_undone_and_saved) {
     };
     const SimulationResult result =
         simulate(subject.system(), *Method(method).stepper(), plan, watch, state, observer, chooser.policy());
-    rollbacks = chooser.rollbacks();
+    rollbacks = chooser.decisions().rollbacks;
     BOOST_TEST((result.status == (step ? StepStatus::diverged : StepStatus::done)));
     if (!step) BOOST_TEST(last_time == 0.5, tolerance(1e-9));
     BOOST_TEST(result.failures == rollbacks);

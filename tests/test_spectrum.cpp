@@ -269,9 +269,7 @@ BlockLinearSystem& stretched(Scene& scene) {
 }
 
 StructuralMatrices matrices_of(BlockLinearSystem& system) {
-  Vector mass(system.size());
-  for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = system.mass()[i / 3];
-  return prepare(system.stiffness().to_sparse(), diagonal(mass));
+  return prepare(system.stiffness().to_sparse(), lumped_mass(system.mass()));
 }
 
 /// max |λ| over the modes, each through the method's own step on its oscillator.

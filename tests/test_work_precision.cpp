@@ -60,7 +60,7 @@ SceneDescription hung_cloth(double alpha = 1e-3) {
 
 Problem small_chain() {
   const double k = 400;
-  return {"small chain", SpringChain({1, 2, 1}, {k, 2 * k, k, k}, {0, 0}), Vector::Ones(3), 1, quiet};
+  return {"small chain", Model(SpringChain({1, 2, 1}, {k, 2 * k, k, k}, {0, 0}), Vector::Ones(3)), 1, quiet};
 }
 
 double gap(const State<Vector>& a, const State<Vector>& b) {
@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(a_reference_is_kept_under_what_the_problem_does) {
   BOOST_TEST(fingerprint(problem) == same);
   const double k = 400;
   const auto other = [&](SpringChain chain, double x, double duration) {
-    Problem changed("other", std::move(chain), Vector::Constant(3, x), duration, quiet);
+    Problem changed("other", Model(std::move(chain), Vector::Constant(3, x)), duration, quiet);
     return fingerprint(changed);
   };
   BOOST_TEST(other({{1, 2, 1}, {k, 2 * k, k, k}, {0, 0}}, 1, 1) == same);
@@ -293,7 +293,7 @@ BOOST_AUTO_TEST_CASE(a_reference_is_kept_under_what_the_problem_does) {
 
 // Errors of order p fall by 2^p when the step is halved: at the two finest steps above rounding.
 BOOST_AUTO_TEST_CASE(every_method_shows_its_order) {
-  Problem linear("chain", uneven_chain(), random_vector(5, 1), 1, quiet);
+  Problem linear("chain", Model(uneven_chain(), random_vector(5, 1)), 1, quiet);
   // Without alpha: linearized RK4 is of order 1 where the damping follows K(x).
   Problem cloth("cloth", Subject(hung_cloth(0)), 0.2, quiet);
   for (Problem* problem : {&linear, &cloth}) {
@@ -328,7 +328,7 @@ BOOST_AUTO_TEST_CASE(every_method_shows_its_order) {
 
 // Over thousands of steps 1.02 of a limit grows past any bound.
 BOOST_AUTO_TEST_CASE(steps_straddle_the_limit_and_divergence_is_kept) {
-  Problem problem("chain", uneven_chain(), random_vector(5, 1), 2000, quiet);
+  Problem problem("chain", Model(uneven_chain(), random_vector(5, 1)), 2000, quiet);
   const std::vector<Contestant> contestants = method_contestants(problem);
   for (const Method& each : all_methods()) {
     const Contestant& c = *std::ranges::find(contestants, each.info().title, &Contestant::name);
@@ -370,7 +370,7 @@ BOOST_AUTO_TEST_CASE(a_plain_rk4_is_precise_at_its_limit_on_the_uniform_chain) {
   BOOST_REQUIRE(run.trajectory.size() == trajectory_samples + 1u);
   BOOST_TEST(run.counts.force_evaluations == 4 * run.steps);
   Trajectory reference{problem.start()};
-  const LinearMotion motion(problem.structure(), problem.damping().d0, problem.damping().alpha,
+  const LinearMotion motion(problem.matrices(), problem.damping().d0, problem.damping().alpha,
                             problem.start());
   for (int i = 1; i <= trajectory_samples; ++i) reference.push_back(motion.at(i / 16.));
   const Errors errors = errors_of(problem.system(), run.trajectory, reference);

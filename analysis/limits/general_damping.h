@@ -29,10 +29,11 @@ std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane&
 /// All that `limits` says of one structure with damping of kind `general`.
 class GeneralDamping {
  public:
-  /// `s`, with its damping, and `k0` must outlive it. Without `proofs` nothing is certified, which is
-  /// quicker.
+  /// `s`, with its damping, must outlive it. Without `proofs` nothing is certified, which is quicker.
   GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
                  double safety, bool proofs, const ArpackOptions& options = {});
+  GeneralDamping(StructuralMatrices&&, const StiffestMode&, const DampingModel&, double, bool,
+                 const ArpackOptions& = {}) = delete;
 
   /// Nothing is certified where K or D is indefinite or not symmetric, and that is the reason given: there
   /// the eigenvalues decide, of the motions that do not grow by themselves.
@@ -53,7 +54,7 @@ class GeneralDamping {
   void add_estimate_near_boundary(const Method& method, MethodLimits& limits);
   void add_lyapunov(const Method& method, MethodLimits& limits);
 
-  const StiffestMode& k0_;
+  StiffestMode k0_;
   DampingModel damping_;
   double safety_;
   bool proofs_;

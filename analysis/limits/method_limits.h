@@ -7,26 +7,10 @@
 #include <string_view>
 
 #include "analysis/limits/step_limits.h"
+#include "analysis/limits/structure.h"
 #include "analysis/spectra/spectrum.h"
 
 namespace springstab {
-
-/// The damping of a structure, as far as limits depend on its form.
-struct DampingModel {
-  enum class Kind {
-    none,
-    rayleigh,  // d0 M + alpha K
-    designed,  // d0 M + alpha K with alpha fitted to each method's step
-    general    // anything else
-  };
-  Kind kind = Kind::none;
-  double d0 = 0;             // [1/s]
-  double alpha = 0;          // [s]
-  bool semidefinite = true;  // D is positive semidefinite
-};
-
-/// D of the matrices: none, Rayleigh if D = d0 M + alpha K fits to 1e-12 with d0, alpha >= 0, else general.
-DampingModel classify_damping(const StructuralMatrices& s);
 
 enum class LimitStatus {
   limited,
@@ -55,9 +39,12 @@ struct MethodLimits {
   LimitSource source = LimitSource::exact;
   std::optional<double> h_certified;  // proved stable, at most h_max
   Proof proof = Proof::none;          // of h_certified
-  std::string_view unproved{};        // why there is none
+  std::string_view unproved{};        // why there is none, in lasting words
   std::optional<double> recommended;  // with the safety factor; absent also where unlimited
   std::optional<DampingDesign> designed;
+  // of StructureLimits alone (structure_limits.h):
+  std::optional<double> every_pose;        // proved stable below it in whatever pose
+  std::optional<double> transient_growth;  // a lower bound of the largest ‖Aⁿ‖ at the recommended step
 };
 
 /// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method

@@ -21,6 +21,7 @@ class CertifiedSteps {
  public:
   /// `s`, whose K and D are positive semidefinite, must outlive it.
   explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
+  explicit CertifiedSteps(StructuralMatrices&&, const ArpackOptions& = {}) = delete;
 
   const NumericalRange& range() const { return range_; }
   /// The proofs of the whole structure; made when first asked for.

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/method.h"
 #include "analysis/spectra/arpack.h"
 #include "solvers/linear/structural_matrices.h"
 

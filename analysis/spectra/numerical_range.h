@@ -23,6 +23,7 @@ class NumericalRange {
  public:
   /// `s` must outlive it. Works densely up to 150 unknowns, else by ARPACK with these options.
   explicit NumericalRange(const StructuralMatrices& s, ArpackOptions options = {});
+  explicit NumericalRange(StructuralMatrices&&, ArpackOptions = {}) = delete;
 
   /// The point of W with the largest a·d + b·k, but for rounding and ARPACK's tolerance; nothing when that
   /// did not converge. It is an estimate from within: no proof that W reaches no farther. `tolerance` may

@@ -1,14 +1,13 @@
 #include "experiments/inputs/subject.h"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <random>
 #include <type_traits>
 
+#include "experiments/inputs/grid.h"
+#include "experiments/inputs/pinned.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
-#include "solvers/io/obj.h"
 #include "solvers/io/tet_file.h"
 #include "solvers/scene/every_pose.h"
 
@@ -19,53 +18,6 @@ bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() &&
          std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
                     [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-}
-
-std::vector<std::vector<int>> grid_faces(const Grid& grid) {
-  std::vector<std::vector<int>> faces;
-  for (int i = 0; i + 1 < grid.rows; ++i)
-    for (int j = 0; j + 1 < grid.columns; ++j) {
-      const int p = i * grid.columns + j;
-      faces.push_back({p, p + 1, p + grid.columns + 1, p + grid.columns});
-    }
-  return faces;
-}
-
-// Particle numbers of the pins, ascending. Pins of a mesh file name its vertices.
-std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles);
-
-std::vector<int> resolve(const Pins& pins, const MeshFile& file) {
-  std::vector<int> numbers;
-  for (const int vertex : resolve(pins, nullptr, static_cast<int>(file.vertices.size())))
-    if (const int particle = file.repair.vertex[vertex]; particle >= 0) numbers.push_back(particle);
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  return numbers;
-}
-
-std::vector<int> resolve(const Pins& pins, const Grid* grid, int particles) {
-  const auto wrong = [&](const std::string& message) { return InputError(pins.source, pins.line, message); };
-  if (pins.kind == Pins::Kind::none) return {};
-  std::vector<int> numbers;
-  if (pins.kind == Pins::Kind::indices) {
-    if (!pins.ranges.empty() && pins.ranges.back().last >= particles)
-      throw wrong("pinned particle " + std::to_string(pins.ranges.back().last) +
-                  " does not exist, expected 0 to " + std::to_string(particles - 1));
-    for (const Range& range : pins.ranges)
-      for (int i = range.first; i <= range.last; ++i) numbers.push_back(i);
-    return numbers;
-  }
-  if (!grid)
-    throw wrong("'first-row' and 'corners' are places on a grid, expected particle numbers for a mesh");
-  if (pins.kind == Pins::Kind::first_row) {
-    for (int j = 0; j < grid->columns; ++j) numbers.push_back(j);
-  } else {
-    const int last = particles - 1;
-    numbers = {0, grid->columns - 1, last - (grid->columns - 1), last};
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-  }
-  return numbers;
 }
 
 SceneDescription describe(const InputOptions& options) {
@@ -117,30 +69,19 @@ auto naming(const std::string& source, Build build) {
   }
 }
 
-// What a scene at rest has of elastic energy after 10^12 rounding errors, more than there are steps in a run:
-// they walk 10^6 of them away.
-double rounding_energy(Scene& scene, Vector x) {
-  const double off = 1e6 * std::numeric_limits<double>::epsilon() * x.cwiseAbs().maxCoeff();
-  std::mt19937 random(1);
-  for (double& coordinate : x) coordinate += random() % 2 == 0 ? off : -off;
-  return scene.elastic_energy(x);
+// At rest but for `stretch` and `velocity`.
+State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
+  State<Vector> state = scene.rest_state();
+  for (Eigen::Index i = 0; i < state.x.size(); ++i) {
+    state.x[i] *= initial.stretch[i % 3];
+    state.v[i] = initial.velocity[i % 3];
+  }
+  return state;
 }
 
 }  // namespace
 
 bool is_scene_file(const std::string& path) { return ends_with(path, ".json"); }
-
-Grid parse_grid(const std::string& text, const std::string& source) {
-  Grid grid;
-  const char* end = text.data() + text.size();
-  const auto rows = std::from_chars(text.data(), end, grid.rows);
-  const bool cross = rows.ec == std::errc() && rows.ptr != end && (*rows.ptr == 'x' || *rows.ptr == 'X');
-  const auto columns = cross ? std::from_chars(rows.ptr + 1, end, grid.columns) : rows;
-  if (!cross || columns.ec != std::errc() || columns.ptr != end)
-    throw InputError(source, 0, "'" + text + "' is not a size, expected ROWSxCOLUMNS like 32x32");
-  check(grid, source);
-  return grid;
-}
 
 Subject::Subject(const InputOptions& options, bool any_matrices) {
   const int given = !options.file.empty() + !options.grid.empty() + !options.stiffness.empty();
@@ -165,10 +106,10 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix})
     if (!file->empty()) files += ", " + *file;
-  matrices_ = naming(files, [&] {
+  Model::operator=(naming(files, [&] {
     const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
-    return std::make_unique<MatrixSystem>(make(k, m, d));
-  });
+    return Model(std::make_unique<MatrixSystem>(make(k, m, d)));
+  }));
 }
 
 Subject::Subject(const SceneDescription& description) { build_scene(description); }
@@ -177,160 +118,75 @@ void Subject::build_scene(const SceneDescription& description) {
   material_ = description.material;
   if (const Grid* grid = std::get_if<Grid>(&description.geometry)) {
     faces_ = grid_faces(*grid);
-    visit_cloth(description.material, "--grid",
-                [&](const auto& material) { place(make(*grid, material), description, grid, "--grid"); });
-    return;
+    return visit_cloth(description.material, "--grid", [&](const auto& material) {
+      const auto cloth = make(*grid, material);
+      place(cloth, description, pinned_particles(description.pins, *grid), "--grid");
+    });
   }
-  const std::string& file = std::get<std::string>(description.geometry);
-  if (is_tet_file(file)) return build_solid(file, description);
-  if (!ends_with(file, ".obj") && std::filesystem::path(file).has_extension())  // a pipe has none
+  const std::string& path = std::get<std::string>(description.geometry);
+  const auto place_mesh = [&](const auto& cloth) {
+    place(cloth, description, pinned_particles(description.pins, *mesh_file_), path);
+  };
+  if (is_tet_file(path)) {
+    const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
+    if (!material) throw InputError(path, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
+    SolidInput input = read_solid(path);
+    mesh_file_ = std::move(input.file);
+    faces_ = std::move(input.faces);
+    return place_mesh(make_solid(input.mesh, *material));
+  }
+  if (!ends_with(path, ".obj") && std::filesystem::path(path).has_extension())  // a pipe has none
     throw InputError(
-        file, 0,
+        path, 0,
         "is of no known kind, expected a suffix: .json for a scene, .obj for a surface, .msh, .veg "
         "or .vtk for tetrahedra");
-  build_surface(file, description);
-}
-
-void Subject::build_surface(const std::string& file, const SceneDescription& description) {
-  Mesh original = read_obj(file);
-  for (int f = 0; f < original.faces(); ++f)
-    faces_.emplace_back(original.face(f).begin(), original.face(f).end());
-  RepairedMesh mended = repaired(original);
-  mesh_file_ = MeshFile{file, false, std::move(original.vertices), std::move(mended.repair)};
-  visit_cloth(description.material, file,
-              [&](const auto& material) { place(make(mended.mesh, material), description, nullptr, file); });
-}
-
-void Subject::build_solid(const std::string& file, const SceneDescription& description) {
-  const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
-  if (!material) throw InputError(file, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
-  TetMesh original = read_tets(file);
-  auto [mesh, repair] = repaired(original);
-  std::vector<int> of_file(mesh.vertices.size());  // the first vertex that each one was
-  for (std::size_t v = repair.vertex.size(); v-- > 0;)
-    if (repair.vertex[v] >= 0) of_file[repair.vertex[v]] = static_cast<int>(v);
-  for (std::vector<int> face : boundary(mesh)) {
-    for (int& v : face) v = of_file[v];
-    faces_.push_back(std::move(face));
-  }
-  mesh_file_ = MeshFile{file, true, std::move(original.vertices), std::move(repair)};
-  place(make_solid(mesh, *material), description, nullptr, file);
+  SurfaceInput input = read_surface(path);
+  mesh_file_ = std::move(input.file);
+  faces_ = std::move(input.faces);
+  visit_cloth(description.material, path,
+              [&](const auto& material) { place_mesh(make(input.mesh, material)); });
 }
 
 template <class Cloth>
-void Subject::place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
+void Subject::place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
                     const std::string& source) {
-  rayleigh_ = description.damping;
-  initial_ = description.initial;
-  const std::vector<int> pinned = mesh_file_
-                                      ? resolve(description.pins, *mesh_file_)
-                                      : resolve(description.pins, grid, static_cast<int>(cloth.rest.size()));
+  pinned_ = std::move(pinned);
+  stretch_ = description.initial.stretch;
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
   if constexpr (std::is_same_v<Cloth, TriangleCloth>)
     if (mesh_file_) {
       mesh_file_->rest_shape = cloth.rest_shape;
       mesh_file_->texture_map = cloth.texture_map;
     }
-  pinned_ = pinned;
-  const std::string pins_source = description.pins.source.empty() ? source : description.pins.source;
-  scene_ = naming(pins_source, [&] {
-    return std::make_unique<Scene>(cloth, pinned, description.gravity,
-                                   RayleighDamping{rayleigh_.d0, rayleigh_.alpha.value_or(0)});
+  const auto& [d0, alpha] = description.damping;
+  auto scene = naming(description.pins.source.empty() ? source : description.pins.source, [&] {
+    return std::make_unique<Scene>(cloth, pinned_, description.gravity,
+                                   RayleighDamping{d0, alpha.value_or(0)});
   });
   std::vector<Eigen::Vector3d> places;
-  for (int i : pinned) places.push_back(initial_.stretch.cwiseProduct(cloth.rest[i]));
-  scene_->place_pinned(places);
+  for (int i : pinned_) places.push_back(stretch_.cwiseProduct(cloth.rest[i]));
+  scene->place_pinned(places);
+  State<Vector> start = start_of(*scene, description.initial);
+  Model::operator=(Model(std::move(scene), std::move(start)));
+  if (!alpha && damping().kind != DampingModel::Kind::general) design_damping();
 }
 
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
-  std::vector<Eigen::Vector3d> particles = scene_->positions(x);
-  if (!mesh_file_) return particles;
-  std::vector<Eigen::Vector3d> all;
-  for (std::size_t v = 0; v < mesh_file_->vertices.size(); ++v) {
-    const int particle = mesh_file_->repair.vertex[v];
-    all.push_back(particle < 0 ? initial_.stretch.cwiseProduct(mesh_file_->vertices[v])
-                               : particles[particle]);
-  }
-  return all;
-}
-
-System& Subject::system() {
-  if (scene_) return *scene_;
-  return *matrices_;
-}
-
-State<Vector> Subject::initial_state(std::uint64_t seed) {
-  if (scene_) {
-    State<Vector> state = scene_->rest_state();
-    for (Eigen::Index i = 0; i < state.x.size(); ++i) {
-      state.x[i] *= initial_.stretch[i % 3];
-      state.v[i] = initial_.velocity[i % 3];
-    }
-    return state;
-  }
-  State<Vector> state{Vector(matrices_->size()), Vector::Zero(matrices_->size())};
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  for (double& entry : state.x) entry = uniform(random);
-  state.x /= std::sqrt(2 * matrices_->kinetic_energy(state.x));  // xᵀMx = 1
-  return state;
-}
-
-EnergyWatch Subject::energy_watch(const State<Vector>& start) {
-  EnergyWatch watch;
-  watch.initial_energy = system().kinetic_energy(start.v);
-  if (scene_) {
-    watch.initial_energy += std::max(scene_->elastic_energy(start.x), rounding_energy(*scene_, start.x));
-    watch.gravity = scene_->gravity().norm();
-    watch.mass = scene_->total_free_mass();
-  } else {
-    watch.initial_energy += matrices_->potential_energy(start.x);
-    watch.may_grow = true;
-  }
-  watch.initial_total = system().kinetic_energy(start.v) + system().potential_energy(start.x);
-  return watch;
-}
-
-StructuralMatrices Subject::structure(const State<Vector>& state) {
-  if (matrices_) return matrices_->matrices();
-  BlockLinearSystem& linear = scene_->linearized(state.x, state.v);
-  StructuralMatrices s;
-  s.stiffness = linear.stiffness().to_sparse();
-  Vector mass(scene_->size());
-  for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = linear.mass()[i / 3];
-  s.mass = SparseMatrix(mass.asDiagonal());
-  if (const BlockSparseMatrix* own = linear.own_damping())
-    s.damping = linear.damping().d0 * s.mass + linear.damping().alpha * s.stiffness + own->to_sparse();
-  return s;
+  std::vector<Eigen::Vector3d> particles = scene()->positions(x);
+  return mesh_file_ ? file_vertices(*mesh_file_, particles, stretch_) : particles;
 }
 
 std::optional<StructuralMatrices> Subject::every_pose() const {
   if (!net_) return std::nullopt;
-  return springstab::every_pose(*net_, pinned_, {rayleigh_.d0, rayleigh_.alpha.value_or(0)});
+  return springstab::every_pose(*net_, pinned_, {damping().d0, damping().alpha});
 }
 
-DampingModel Subject::damping() {
-  if (matrices_) return classify_damping(matrices_->matrices());
-  using Kind = DampingModel::Kind;
-  const double alpha = rayleigh_.alpha.value_or(0);
-  const Kind kind = scene_->has_own_damping()         ? Kind::general
-                    : !rayleigh_.alpha                ? Kind::designed
-                    : rayleigh_.d0 == 0 && alpha == 0 ? Kind::none
-                                                      : Kind::rayleigh;
-  return {kind, rayleigh_.d0, alpha};
-}
-
-void Subject::design_damping() {
-  if (!scene_) throw InputError("--damping", 0, "'designed' is for scenes, expected 'own' for matrices");
-  if (scene_->has_own_damping())
+void expect_designable(const Model& model) {
+  if (!model.scene())
+    throw InputError("--damping", 0, "'designed' is for scenes, expected 'own' for matrices");
+  if (model.damping().kind == DampingModel::Kind::general)
     throw InputError("--damping", 0,
                      "'designed' is not possible beside the springs' own damping, expected 'own'");
-  rayleigh_.alpha.reset();
-}
-
-void Subject::set_alpha(double alpha) {
-  rayleigh_.alpha = alpha;
-  scene_->set_damping({rayleigh_.d0, alpha});
 }
 
 }  // namespace springstab

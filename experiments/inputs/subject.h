@@ -2,16 +2,13 @@
 // grid) or a system of matrices.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "analysis/limits/method_limits.h"
+#include "analysis/model.h"
+#include "experiments/inputs/mesh_file.h"
 #include "experiments/inputs/scene_description.h"
-#include "solvers/linear/matrix_system.h"
-#include "solvers/scene/mesh_repair.h"
-#include "solvers/scene/scene.h"
-#include "solvers/simulation.h"
 
 namespace springstab {
 
@@ -24,33 +21,17 @@ struct InputOptions {
   std::string stiffness, mass, damping_matrix;
 };
 
-/// A mesh file as it was, and what was mended to make a scene of it.
-struct MeshFile {
-  std::string path;
-  bool solid;                             // of tetrahedra
-  std::vector<Eigen::Vector3d> vertices;  // [m]
-  MeshRepair repair;
-
-  // of a cloth of triangles:
-  std::optional<RestShape> rest_shape{};
-  std::optional<TextureMap> texture_map{};
-};
-
-/// A system with its start and everything that limits and reports need to know about it.
-class Subject {
+/// A model, and where it came from.
+class Subject : public Model {
  public:
   /// Throws InputError or std::invalid_argument when the input is unusable.
   /// Matrices must be symmetric unless `any_matrices` (prepare_nonsymmetric).
   explicit Subject(const InputOptions& options, bool any_matrices = false);
   explicit Subject(const SceneDescription& description);
 
-  System& system();
-  Scene* scene() { return scene_.get(); }               // null for matrices
-  MatrixSystem* matrices() { return matrices_.get(); }  // null for scenes
-
   /// Faces for pictures, those of the mesh file (of a solid its surface) or of a grid's cells: numbers of
   /// vertices(); none for matrices.
-  const std::vector<std::vector<int>>& faces() const { return faces_; }
+  const Faces& faces() const { return faces_; }
 
   /// Of a scene, where the vertices of faces() are: the particles, or all vertices of the mesh file in its
   /// order. One that was merged is where its particle is; an unreferenced one stays where it started.
@@ -62,46 +43,28 @@ class Subject {
   /// What a scene is made of; nothing for matrices.
   const std::optional<Material>& material() const { return material_; }
 
-  /// The start: a scene's own; for matrices a random displacement of unit M-norm, at rest.
-  State<Vector> initial_state(std::uint64_t seed);
-  EnergyWatch energy_watch(const State<Vector>& start);
-
-  /// K and M at a state (matrices are the same at all), D where it is of kind `general`, and what kind of
-  /// damping there is.
-  StructuralMatrices structure(const State<Vector>& state);
-  DampingModel damping();
   /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
   std::optional<StructuralMatrices> every_pose() const;
 
-  /// Leaves alpha to the design, as "alpha": "designed" does. Throws InputError for matrices.
-  void design_damping();
-  /// Fixes alpha where it was left to the design.
-  void set_alpha(double alpha);
-
  private:
   void build_scene(const SceneDescription& description);
-  void build_surface(const std::string& file, const SceneDescription& description);
-  void build_solid(const std::string& file, const SceneDescription& description);
   template <class Cloth>
-  void place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
+  void place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
              const std::string& source);
   void build_matrices(const InputOptions& options, bool any_matrices);
 
-  std::unique_ptr<Scene> scene_;
-  std::unique_ptr<MatrixSystem> matrices_;
-  std::vector<std::vector<int>> faces_;
+  Faces faces_;
   std::optional<MeshFile> mesh_file_;
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
   std::optional<Material> material_;
-  RayleighDescription rayleigh_;
-  InitialDescription initial_;
+  Eigen::Vector3d stretch_{1, 1, 1};
 };
+
+/// Throws InputError where alpha cannot be left to the design.
+void expect_designable(const Model& model);
 
 /// Whether a file is a scene, by its suffix.
 bool is_scene_file(const std::string& path);
-
-/// "NxM" as a grid. Throws InputError(source, ...).
-Grid parse_grid(const std::string& text, const std::string& source);
 
 }  // namespace springstab

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
 
 namespace springstab {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// M x'' = -K x - D v. An empty D (0 x 0) means none.
+/// M x'' = -K x - D v. D is all of the damping there is; an empty one (0 x 0) means none.
 struct StructuralMatrices {
   SparseMatrix stiffness, mass, damping;
   Eigen::Index condensed = 0;  // massless unknowns that were eliminated
@@ -28,6 +29,9 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
 /// every unknown needs mass.
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
                                         const SparseMatrix& damping = {});
+
+/// M of particles with three unknowns each: diagonal; one mass per particle [kg].
+SparseMatrix lumped_mass(std::span<const double> mass);
 
 /// diag(d) A diag(d).
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d);

@@ -9,7 +9,7 @@
 
 #include "analysis/method.h"
 #include "experiments/runs/measured_run.h"
-#include "experiments/step_chooser.h"
+#include "experiments/runs/step_run.h"
 #include "experiments/studies/bench/measure.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/triangle_cloth.h"
@@ -90,7 +90,7 @@ void linearized(benchmark::State& state, const Model& model) {
     SimulateOptions options;
     options.method = "linearized-explicit-euler";
     options.duration = duration;
-    StepChooser chooser(subject, {}, options);
+    StepChooser chooser(subject, step_options({}, options));
     const StepPlan plan = chooser.first_plan().value();
     const State<Vector> start = subject.initial_state(1);
     const MeasuredRun run = measured_run(subject.system(), options.method, plan, chooser.watch(start), start,
@@ -98,7 +98,7 @@ void linearized(benchmark::State& state, const Model& model) {
     if (run.result.status != StepStatus::done) throw std::runtime_error("the drape failed");
     least = std::min(least, run.cpu_seconds);
     h = plan.h;
-    rollbacks = chooser.rollbacks();
+    rollbacks = chooser.decisions().rollbacks;
   }
   report(state, least / duration, 0.5);
   state.counters["h_ms"] = 1e3 * h;

@@ -7,7 +7,7 @@
 #include "analysis/spectra/spectrum.h"
 #include "experiments/command/output.h"
 #include "experiments/runs/measured_run.h"
-#include "experiments/step_chooser.h"
+#include "experiments/runs/step_run.h"
 
 namespace springstab {
 namespace {
@@ -49,9 +49,9 @@ std::vector<Moment> moments_of(const Drape& drape, const std::string& method, do
   SimulateOptions options;
   options.method = method;
   options.duration = duration;
-  StepChooser chooser(subject, common, options);
+  StepChooser chooser(subject, step_options(common, options));
   const std::optional<StepPlan> plan = chooser.first_plan();
-  if (!plan) throw std::runtime_error("a drape cannot start: " + chooser.reason());
+  if (!plan) throw std::runtime_error("a drape cannot start: " + reason_text(chooser));
   const State<Vector> start = subject.initial_state(common.seed);
   std::vector<Moment> moments;
   const auto due = [&] { return duration * static_cast<double>(moments.size()) / count * (1 - 1e-9); };
@@ -77,7 +77,7 @@ std::vector<K0Sample> watch_k0(const Drape& drape, const std::vector<Moment>& mo
   std::vector<K0Sample> samples;
   Vector power, arpack;  // found last
   for (const Moment& moment : moments) {
-    const StructuralMatrices structure = subject.structure(moment.state);
+    const StructuralMatrices structure = subject.structure(moment.state).matrices;
     const LinearOperator s = scaled_stiffness(structure);
     const SymmetricEigenpairs reference =
         largest_eigenpairs(s, 1, {.tolerance = 1e-9, .seed = common.seed, .start = arpack});

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "experiments/step_chooser.h"
+#include "experiments/runs/step_run.h"
 
 namespace springstab {
 namespace {
@@ -22,7 +22,7 @@ void set_damping(Subject& subject, const Heat& heat, const CommonOptions& common
   if (heat.contestant.damping == DampingRule::drag) subject.set_alpha(0);
   if (heat.contestant.damping == DampingRule::leu) {
     const SimulateOptions leu_options = options_for(heat, "linearized-explicit-euler", heat.duration);
-    StepChooser(subject, common, leu_options).first_plan(heat.k0);
+    StepChooser(subject, step_options(common, leu_options)).first_plan(heat.k0);
   }
 }
 
@@ -34,9 +34,9 @@ HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
   subject.scene()->solver().tolerance = heat.contestant.cg_tolerance;
   set_damping(subject, heat, common);
   const SimulateOptions options = options_for(heat, heat.contestant.method, duration);
-  StepChooser chooser(subject, common, options);
+  StepChooser chooser(subject, step_options(common, options));
   const std::optional<StepPlan> plan = chooser.first_plan(heat.k0);
-  if (!plan) throw std::runtime_error(heat.contestant.name + ": " + chooser.reason());
+  if (!plan) throw std::runtime_error(heat.contestant.name + ": " + reason_text(chooser));
   const State<Vector> start = subject.initial_state(common.seed);
   const MethodInfo& method = Method(heat.contestant.method).info();
   if (method.implicit || method.linearized)  // makes the matrix: set-up, not part of the run
@@ -45,12 +45,12 @@ HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
                                             chooser.watch(start), start, {}, chooser.policy());
   HeatResult result;
   result.heat = heat;
-  result.h = chooser.present_step();
+  result.h = chooser.decisions().h;
   result.alpha = subject.damping().alpha;
   result.steps = measured.result.steps;
   result.counts = measured.counts;
-  result.rollbacks = chooser.rollbacks();
-  result.halved_steps = chooser.halved_steps();
+  result.rollbacks = chooser.decisions().rollbacks;
+  result.halved_steps = chooser.decisions().halved_steps;
   result.finished = measured.result.status == StepStatus::done && measured.end.x.allFinite();
   result.cpu_seconds = {measured.cpu_seconds};
   return result;
@@ -88,8 +88,9 @@ bool same(const Counts& a, const Counts& b) {
 
 StiffestMode k0_of(const Drape& drape, const CommonOptions& common) {
   Subject subject(describe(drape));
-  const StiffestMode k0 = estimated_stiffest_mode(subject.structure(subject.initial_state(common.seed)),
-                                                  {.tolerance = 1e-8, .seed = common.seed});
+  const StiffestMode k0 =
+      estimated_stiffest_mode(subject.structure(subject.initial_state(common.seed)).matrices,
+                              {.tolerance = 1e-8, .seed = common.seed});
   if (!k0.converged) throw std::runtime_error("k0 of a drape did not converge");
   return k0;
 }

@@ -5,9 +5,9 @@
 #include <random>
 
 #include "analysis/limits/step_limits.h"
+#include "analysis/limits/step_policy.h"
 #include "analysis/regions/amplification.h"
 #include "experiments/runs/measured_run.h"
-#include "experiments/step_chooser.h"
 
 namespace springstab {
 namespace {
@@ -100,7 +100,7 @@ double k0_growth(Subject& subject, const State<Vector>& start, double k0, double
              if (so_far.time < due) return true;
              due += options.duration / 20;
              const StiffestMode now = estimated_stiffest_mode(
-                 subject.structure(s), {.tolerance = k0_tolerance, .seed = options.seed});
+                 subject.structure(s).matrices, {.tolerance = k0_tolerance, .seed = options.seed});
              if (now.converged) largest = std::max(largest, now.value / k0);
              return true;
            });
@@ -176,7 +176,7 @@ ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStu
                        const std::function<void(double)>& report, Journal& journal) {
   Scene& scene = *subject.scene();
   const State<Vector> start = subject.initial_state(options.seed);
-  const double k0 = stiffest_mode(subject.structure(start), {.seed = options.seed}).value;
+  const double k0 = stiffest_mode(subject.structure(start).matrices, {.seed = options.seed}).value;
   ClothStudy study;
   const std::vector<Case> all = cases(k0);
   for (const Case& c : all) {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "analysis/limits/step_limits.h"
+#include "analysis/limits/step_policy.h"
 #include "analysis/regions/amplification.h"
-#include "experiments/step_chooser.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/simulation.h"

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <random>
 
-#include "analysis/limits/general_damping.h"
 #include "analysis/method.h"
 #include "analysis/regions/amplification.h"
 #include "analysis/spectra/generator_spectrum.h"
+#include "analysis/structure_limits.h"
 #include "experiments/inputs/subject.h"
 #include "experiments/region.h"
 #include "experiments/studies/divergence/divergence.h"
@@ -88,16 +88,16 @@ Panel draw_panel(const std::string& base, const StructuralMatrices& s, const std
 
 Json draw_map(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
   Subject subject = damped_net();
-  const StructuralMatrices s = subject.structure(subject.initial_state(common.seed));
-  const StiffestMode k0 = stiffest_mode(s, {.seed = common.seed});
+  StructureLimits answer(subject.structure(subject.initial_state(common.seed)),
+                         {.safety = 1, .seed = common.seed});
+  const StructuralMatrices& s = answer.structure().matrices;
   const std::vector<DampedMode> modes = damped_modes(s).value();
-  GeneralDamping damping(s, k0, subject.damping(), 1, true, {.seed = common.seed});
 
   std::string settings = "data=" + gnuplot_literal(base) + text("; steps=%ld; ", map_steps);
   std::vector<std::string> files;
   bool holds = true;
   for (const std::string method : map_methods) {
-    const MethodLimits limits = damping.limits(method);
+    const MethodLimits limits = answer.limits(method);
     const double limit = limits.h_max.value();
     const StabilityRegion& region = stability_region(method);
     const Window window = region.natural_window(0.1);

@@ -68,9 +68,10 @@ std::vector<PhaseCurve> phase_errors(const CommonOptions& common) {
   const double d = alpha * lambda, omega = std::sqrt(lambda - d * d / 4);
   const double duration = periods * 2 * std::numbers::pi / omega;
   Problem problem("slow mode",
-                  SpringChain(std::vector<double>(chain_length, 1.),
-                              std::vector<double>(chain_length + 1, 1.), {0, alpha}),
-                  x, duration, common);
+                  Model(SpringChain(std::vector<double>(chain_length, 1.),
+                                    std::vector<double>(chain_length + 1, 1.), {0, alpha}),
+                        x),
+                  duration, common);
   std::vector<PhaseCurve> curves;
   for (const Contestant& contestant : method_contestants(problem)) {
     PhaseCurve curve{contestant.name, {}, {}};

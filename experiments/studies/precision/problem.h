@@ -1,15 +1,13 @@
 // What methods are compared on: a system, its start and a time to simulate.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "analysis/limits/general_damping.h"
+#include "analysis/model.h"
+#include "analysis/structure_limits.h"
 #include "experiments/command/options.h"
-#include "experiments/inputs/subject.h"
-#include "solvers/spring_chain.h"
 
 namespace springstab {
 
@@ -17,26 +15,25 @@ class Problem {
  public:
   Problem(const Problem&) = delete;
   Problem& operator=(const Problem&) = delete;
-  Problem(std::string title, Subject subject, double duration, const CommonOptions& common);
-  /// Starts at rest, displaced by x [m].
-  Problem(std::string title, SpringChain chain, const Vector& x, double duration,
-          const CommonOptions& common);
+  /// Throws InputError where alpha is left to the design.
+  Problem(std::string title, Model model, double duration, const CommonOptions& common);
 
   const std::string& title() const { return title_; }
   double duration() const { return duration_; }  // [s]
   const State<Vector>& start() const { return start_; }
   const EnergyWatch& watch() const { return watch_; }
 
-  System& system();
-  Scene* scene() { return subject_ ? subject_->scene() : nullptr; }
-  bool is_linear() { return !scene(); }
+  const Model& model() const { return model_; }
+  System& system() { return model_.system(); }
+  Scene* scene() { return model_.scene(); }
+  bool is_linear() const { return model_.is_linear(); }
   const DampingModel& damping() const { return damping_; }
-  /// M, K and D of the start.
-  const StructuralMatrices& structure() const { return structure_; }
-  double k0() const { return k0_.value; }                    // at the start, by ARPACK [1/s²]
+  /// Of the start.
+  const StructuralMatrices& matrices() const { return limits_->structure().matrices; }
+  double k0() { return limits_->k0().value; }                // at the start, by ARPACK [1/s²]
   double set_up_seconds() const { return set_up_seconds_; }  // CPU time of k0
 
-  /// Fits the damping to each method's step from now on. Throws InputError where that cannot be.
+  /// Fits the damping to each method's step from now on. Throws std::invalid_argument where that cannot be.
   void design_damping();
   bool is_designed() const { return designed_; }
   /// The damping that goes with a step: the own one unless it is designed.
@@ -48,22 +45,15 @@ class Problem {
   std::optional<double> limit(std::string_view method);
 
  private:
-  void prepare(const CommonOptions& common);
-  void set_alpha(double alpha);
-
   std::string title_;
-  std::optional<Subject> subject_;
-  std::unique_ptr<SpringChain> chain_;
+  Model model_;
   double duration_;
   State<Vector> start_;
   EnergyWatch watch_;
-  StructuralMatrices structure_;
-  DampingModel damping_;
-  StiffestMode k0_;
-  std::unique_ptr<GeneralDamping> general_damping_;  // made when asked for; refers to the two above
+  DampingModel damping_;                   // its own
+  std::optional<StructureLimits> limits_;  // of the start, with its own damping
   double set_up_seconds_ = 0;
   bool designed_ = false;
-  std::uint64_t seed_ = 1;
 };
 
 }  // namespace springstab

@@ -30,7 +30,7 @@ bool has_modes(Problem& problem) {
 }
 
 Trajectory by_modes(const Problem& problem, std::uint64_t seed) {
-  const LinearMotion motion(problem.structure(), problem.damping().d0, problem.damping().alpha,
+  const LinearMotion motion(problem.matrices(), problem.damping().d0, problem.damping().alpha,
                             problem.start(), seed);
   Trajectory trajectory{problem.start()};
   for (double t : sample_times(problem)) trajectory.push_back(motion.at(t));

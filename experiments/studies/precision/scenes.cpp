@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "experiments/inputs/subject.h"
 #include "experiments/studies/complexity/drape.h"
 
 namespace springstab {
@@ -19,7 +20,7 @@ Problem chain(const std::string& title, double tenth_spring, const CommonOptions
     const double s = (i + 1.) / (n + 1.), away = (s - 0.3) / 0.05;
     x[i] = std::exp(-away * away);
   }
-  return {title, SpringChain(std::vector<double>(n, 1.), stiffness, {1, 1e-4}), x, 1, common};
+  return {title, Model(SpringChain(std::vector<double>(n, 1.), stiffness, {1, 1e-4}), x), 1, common};
 }
 
 SceneDescription net(int rows, int columns, const PerKind& stiffness, double factor) {
@@ -48,7 +49,8 @@ const char* how_stiff(double factor) { return factor > 1 ? ", stiff" : ", soft";
 
 Problem oscillator(const CommonOptions& common) {
   const double omega = 2 * std::numbers::pi;
-  return {"Undamped oscillator", SpringChain({1.}, {omega * omega, 0}, {0, 0}), Vector::Ones(1), 1, common};
+  return {"Undamped oscillator", Model(SpringChain({1.}, {omega * omega, 0}, {0, 0}), Vector::Ones(1)), 1,
+          common};
 }
 
 Problem uniform_chain(const CommonOptions& common) {

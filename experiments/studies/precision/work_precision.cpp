@@ -100,7 +100,10 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
   Subject subject(options.input);
   print_mesh_notes(subject);
   Problem problem(title_of(options.input), std::move(subject), options.duration, common);
-  if (options.damping == "designed") problem.design_damping();
+  if (options.damping == "designed") {
+    expect_designable(problem.model());
+    problem.design_damping();
+  }
   if (!options.output.empty()) make_folder(options.output);
   const Json settings{{"duration", options.duration},     {"damping", options.damping},
                       {"time-limit", options.time_limit}, {"repetitions", options.repetitions},

@@ -6,10 +6,10 @@
 
 #include "analysis/errors/linear_motion.h"
 #include "analysis/gsl/adaptive_integrator.h"
-#include "analysis/limits/general_damping.h"
+#include "analysis/structure_limits.h"
 #include "experiments/command/output.h"
 #include "experiments/runs/measured_run.h"
-#include "experiments/step_chooser.h"
+#include "experiments/runs/step_run.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -42,16 +42,6 @@ SlowMode slow_mode(const StructuralMatrices& s) {
           k[i] == 0 ? 1 : quarter_turn / std::sqrt(std::abs(k[i]))};
 }
 
-MethodLimits limits_of(Subject& subject, const State<Vector>& start, std::string_view method,
-                       const CommonOptions& common, double& k0_value) {
-  const StructuralMatrices structure = subject.structure(start);
-  const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
-  k0_value = k0.value;
-  const DampingModel damping = subject.damping();
-  if (damping.kind != DampingModel::Kind::general) return method_limits(method, k0, damping, 1);
-  return GeneralDamping(structure, k0, damping, 1, false, {.seed = common.seed}).limits(method);
-}
-
 double norm(System& system, const Vector& u) { return std::sqrt(2 * system.kinetic_energy(u)); }
 
 std::optional<Vector> true_places(Subject& subject, const State<Vector>& start, double time) {
@@ -82,10 +72,10 @@ class Run {
   void operator()() {
     choose_start();
     if (case_.ratio && !step_of_ratio()) return;
-    StepChooser chooser(subject_, common_, options_);
+    StepChooser chooser(subject_, step_options(common_, options_));
     if (!k0_) k0_ = chooser.first_k0();
     std::optional<StepPlan> plan = options_.step ? chooser.first_plan() : chooser.first_plan(*k0_);
-    if (!plan) return say(StressOutcome::no_step, chooser.reason());
+    if (!plan) return say(StressOutcome::no_step, reason_text(chooser));
     const long affordable =
         std::max<long>(100, static_cast<long>(most_work / static_cast<double>(subject_.system().size())));
     const bool shortened = plan->steps > affordable;
@@ -130,7 +120,7 @@ class Run {
     options_.method = method_;
     options_.duration = case_.duration;
     if (subject_.matrices() && !case_.ratio) {
-      const SlowMode slow = slow_mode(subject_.structure(start_));
+      const SlowMode slow = slow_mode(subject_.structure(start_).matrices);
       start_ = slow.start;
       if (case_.duration == 0) options_.duration = slow.quarter;
     }
@@ -139,12 +129,16 @@ class Run {
   }
 
   bool step_of_ratio() {
-    double k0 = 0;
-    const MethodLimits limits = limits_of(subject_, start_, method_, common_, k0);
+    Structure structure = subject_.structure(start_);
+    const StiffestMode k0 = stiffest_mode(structure.matrices, {.seed = common_.seed});
+    const MethodLimits limits =
+        StructureLimits(std::move(structure), {.safety = 1, .certify = false, .seed = common_.seed}, k0)
+            .limits(method_);
     if (limits.status == LimitStatus::none || limits.status == LimitStatus::unknown)
       return say(StressOutcome::no_step, "no positive step is stable"), false;
-    options_.step = *case_.ratio * (limits.status == LimitStatus::unlimited ? stiff_step * 2 / std::sqrt(k0)
-                                                                            : *limits.h_max);
+    options_.step =
+        *case_.ratio *
+        (limits.status == LimitStatus::unlimited ? stiff_step * 2 / std::sqrt(k0.value) : *limits.h_max);
     options_.duration = bounded_steps * *options_.step;
     options_.relinearize = options_.duration;
     return true;
@@ -202,7 +196,8 @@ StressResult run_stress(const StressCase& c, std::string_view method, const std:
   };
   try {
     Subject subject(c.write(folder));
-    Run(c, method, common, subject, k0, result)();
+    Run run(c, method, common, subject, k0, result);
+    naming_duration([&] { run(); });
   } catch (const InputError& error) {
     refused(error);
   } catch (const std::invalid_argument& error) {

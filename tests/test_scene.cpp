@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "analysis/method.h"
+#include "solvers/methods/rk4.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"
+#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(scene)
 
@@ -512,6 +514,102 @@ BOOST_AUTO_TEST_CASE(an_unconnected_particle_falls_as_each_method_must_have_it) 
       check_equal(state.x, fallen, n * eps);
       check_equal(state.v, start.v + n * h * g, n * eps);
     }
+}
+
+// A term as a user writes one: one particle is held to a point of space by E = ½ k |d|² + ¼ q |d|⁴, so that
+// K = (k + q |d|²) 1 + 2 q d dᵀ.
+class Anchor final : public ElasticTerm {
+ public:
+  Anchor(int particle, const Vector3d& point, double k, double q)
+      : particle_(particle), point_(point), k_(k), q_(q) {}
+  std::string_view name() const override { return "anchors"; }
+  int size() const override { return 1; }
+  double energy(const ParticleField& x) const override {
+    const double s = offset(x).squaredNorm();
+    return k_ * s / 2 + q_ * s * s / 4;
+  }
+  void add_force(const ParticleField& x, double* force) const override {
+    const Vector3d d = offset(x);
+    at(force) -= (k_ + q_ * d.squaredNorm()) * d;
+  }
+  void add_stiffness_times(const ParticleField& x, const double* u, double scale,
+                           double* out) const override {
+    at(out) += scale * (hessian(x) * Eigen::Map<const Vector3d>(u + 3 * particle_));
+  }
+  Couplings couplings() const override { return {}; }  // the diagonal is always there
+  void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override {
+    Eigen::Map<Eigen::Matrix3d>(stiffness.block(stiffness.diagonal(particle_))) += hessian(x);
+  }
+  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override {
+    add_stiffness(x, stiffness);  // it is positive semidefinite everywhere
+  }
+
+ private:
+  Vector3d offset(const ParticleField& x) const { return Eigen::Map<const Vector3d>(x[particle_]) - point_; }
+  Eigen::Matrix3d hessian(const ParticleField& x) const {
+    const Vector3d d = offset(x);
+    return (k_ + q_ * d.squaredNorm()) * Eigen::Matrix3d::Identity() + 2 * q_ * d * d.transpose();
+  }
+  Eigen::Map<Vector3d> at(double* field) const { return Eigen::Map<Vector3d>(field + 3 * particle_); }
+
+  int particle_;
+  Vector3d point_;
+  double k_, q_;
+};
+
+TermMaker anchor(int particle, const Vector3d& point, double k, double q) {
+  return [=](const std::vector<int>& number, int) {
+    SceneTerms terms;
+    terms.elastic.push_back(std::make_unique<Anchor>(number[particle], point, k, q));
+    return terms;
+  };
+}
+
+BOOST_AUTO_TEST_CASE(a_users_term_acts_beside_those_of_a_net) {
+  for_each_pose([](const SpringNet& net, const Pose& pose, Random& random) {
+    const RayleighDamping damping{0.3, 0.02};
+    Scene without(net, some_pins, Vector3d::Zero(), damping), with(net, some_pins, Vector3d::Zero(), damping);
+    with.add(anchor(5, Vector3d(0.4, -0.3, 0.2), 30, 70));
+    const Vector x = take(with, pose, some_pins), v = random.vector(x.size(), 1);
+    take(without, pose, some_pins);
+    BOOST_TEST(with.terms().elastic.size() == without.terms().elastic.size() + 1);
+
+    const Dense added = stiffness(with, x) - stiffness(without, x);
+    const auto more_force = [&](const Vector& at) {
+      return Vector(force(with, at, 0 * v) - force(without, at, 0 * v));
+    };
+    const auto more_energy = [&](const Vector& at) {
+      return Vector::Constant(1, with.elastic_energy(at) - without.elastic_energy(at));
+    };
+    BOOST_TEST(added.norm() > 10);
+    const Vector gradient = differenced(more_energy, x, 1e-4).transpose();
+    BOOST_TEST((more_force(x) + gradient).norm() <= 1e-5 * (1 + gradient.norm()));
+    check_equal(added, -differenced(more_force, x, 1e-4), 1e-5);
+    // Rayleigh damping resists with the term's stiffness, too.
+    const Vector damped = force(with, x, v) - force(without, x, v) - more_force(x);
+    check_equal(damped, Vector(-damping.alpha * (added * v)), 1e-9);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(a_scene_of_users_terms_alone_moves_as_they_say) {
+  const double k = 12, m = 0.4;
+  const Vector3d point(0.1, 0.2, -0.3);
+  Scene scene({{0.5, 0.2, -0.3}, {3, 0, 0}}, {m, 1}, anchor(0, point, k, 0), {1}, Vector3d::Zero(), {});
+  BOOST_TEST(scene.size() == 3);
+  BOOST_TEST(stiffness(scene, scene.rest_state().x)(1, 1) == k);
+  State<Vector> state = scene.rest_state();
+  const double period = 2 * pi * std::sqrt(m / k);
+  const auto stepper = make_stepper(Rk4());
+  for (int i = 0; i < 250; ++i)
+    BOOST_REQUIRE((stepper->step(scene, period / 1000, state) == StepStatus::done));
+  BOOST_TEST((state.x - point).norm() <= 1e-8);  // after a quarter of a period
+  BOOST_TEST(state.v[0] == -0.4 * std::sqrt(k / m), tolerance(1e-8));
+
+  BOOST_CHECK_THROW(scene.add(anchor(0, point, 1, 0)), std::invalid_argument);  // it has matrices
+  for (const double bad : {0.0, -1.0, double{NAN}, double{INFINITY}})
+    BOOST_CHECK_THROW(Scene({{0, 0, 0}}, {bad}, anchor(0, point, 1, 0), {}, point, {}),
+                      std::invalid_argument);
+  BOOST_CHECK_THROW(Scene({{0, 0, 0}}, {1, 1}, anchor(0, point, 1, 0), {}, point, {}), std::invalid_argument);
 }
 
 // v' = g - d0 v; g/d0 is a fixed point of every method, approached by |R(-0.5)| <= 2/3 a step.

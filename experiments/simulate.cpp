@@ -105,7 +105,8 @@ void prepare_solver(Subject& subject, const SimulateOptions& options) {
 
 int say_no_plan(const StepChooser& chooser, bool json) {
   if (json) {
-    print_json(Json{{"method", chooser.method().name()}, {"step", nullptr}, {"status", reason_text(chooser)}});
+    print_json(
+        Json{{"method", chooser.method().name()}, {"step", nullptr}, {"status", reason_text(chooser)}});
   } else {
     std::cout << reason_text(chooser) << '\n';
   }

@@ -14,7 +14,7 @@ struct UnitOscillators final : springstab::LinearSystem {
   void stiffness_times(const Vector& u, Vector& out) override { out = u; }
   void damping_times(const Vector& u, Vector& out) override { out = 0 * u; }
   springstab::SolveReport solve_shifted(const springstab::Shift& shift, const Vector& rhs,
-                                         Vector& out) override {
+                                        Vector& out) override {
     out = rhs / (shift.mass + shift.stiffness);
     return {};
   }

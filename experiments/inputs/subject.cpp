@@ -158,17 +158,15 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, std
       mesh_file_->rest_shape = cloth.rest_shape;
       mesh_file_->texture_map = cloth.texture_map;
     }
-  const auto& [d0, alpha] = description.damping;
-  auto scene = naming(description.pins.source.empty() ? source : description.pins.source, [&] {
-    return std::make_unique<Scene>(cloth, pinned_, description.gravity,
-                                   RayleighDamping{d0, alpha.value_or(0)});
-  });
+  const RayleighDamping own{description.damping.d0, description.damping.alpha.value_or(0)};
+  auto scene = naming(description.pins.source.empty() ? source : description.pins.source,
+                      [&] { return std::make_unique<Scene>(cloth, pinned_, description.gravity, own); });
   std::vector<Eigen::Vector3d> places;
   for (int i : pinned_) places.push_back(stretch_.cwiseProduct(cloth.rest[i]));
   scene->place_pinned(places);
   State<Vector> start = start_of(*scene, description.initial);
   Model::operator=(Model(std::move(scene), std::move(start)));
-  if (!alpha && damping().kind != DampingModel::Kind::general) design_damping();
+  if (!description.damping.alpha && damping().kind != DampingModel::Kind::general) design_damping();
 }
 
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {

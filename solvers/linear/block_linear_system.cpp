@@ -3,12 +3,6 @@
 #include <Eigen/Cholesky>
 
 namespace springstab {
-namespace {
-
-using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-}  // namespace
-
 BlockLinearSystem::BlockLinearSystem(
     std::vector<double> mass, RayleighDamping damping,
     std::span<const std::pair<int, int>> stiffness_couplings,
@@ -55,14 +49,14 @@ bool BlockLinearSystem::invert_diagonal_blocks(double mass_factor, double stiffn
                                                double damping_factor) {
   inverse_blocks_.resize(9 * mass_.size());
   for (int i = 0; i < stiffness_.rows(); ++i) {
-    Block h = stiffness_factor * Eigen::Map<const Block>(stiffness_.block(stiffness_.diagonal(i)));
+    Block3 h = stiffness_factor * Eigen::Map<const Block3>(stiffness_.block(stiffness_.diagonal(i)));
     if (own_damping_)
-      h += damping_factor * Eigen::Map<const Block>(own_damping_->block(own_damping_->diagonal(i)));
+      h += damping_factor * Eigen::Map<const Block3>(own_damping_->block(own_damping_->diagonal(i)));
     h.diagonal().array() += mass_factor * mass_[i];
-    const Eigen::LLT<Block> factor(h);
+    const Eigen::LLT<Block3> factor(h);
     if (factor.info() != Eigen::Success) return false;
-    Eigen::Map<Block> inverse(&inverse_blocks_[9 * static_cast<long>(i)]);
-    inverse = factor.solve(Block::Identity());
+    Eigen::Map<Block3> inverse(&inverse_blocks_[9 * static_cast<long>(i)]);
+    inverse = factor.solve(Block3::Identity());
   }
   return true;
 }
@@ -123,7 +117,7 @@ SolveReport BlockLinearSystem::solve_by_block_jacobi(const Shift& shift, Vector&
     Eigen::Array3d dot = Eigen::Array3d::Zero();
     for (long i = 0; i < stiffness_.rows(); ++i) {
       const Eigen::Vector3d ri = r.segment<3>(3 * i);
-      const Eigen::Vector3d zi = Eigen::Map<const Block>(&inverse_blocks_[9 * i]) * ri;
+      const Eigen::Vector3d zi = Eigen::Map<const Block3>(&inverse_blocks_[9 * i]) * ri;
       z.segment<3>(3 * i) = zi;
       dot += ri.array() * zi.array();
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 
 namespace springstab {
+
 BlockLinearSystem::BlockLinearSystem(
     std::vector<double> mass, RayleighDamping damping,
     std::span<const std::pair<int, int>> stiffness_couplings,

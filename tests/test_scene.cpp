@@ -12,6 +12,7 @@
 
 #include "analysis/method.h"
 #include "solvers/linear/dense_solvers.h"
+#include "solvers/linear/structural_matrices.h"
 #include "solvers/methods/rk4.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"

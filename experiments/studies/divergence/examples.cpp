@@ -1,7 +1,6 @@
 #include "experiments/studies/divergence/examples.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "analysis/limits/step_limits.h"
@@ -26,11 +25,8 @@ Scene pendulum(double alpha) {
 
 Switching switching_oscillator() {
   constexpr double soft = 2.6, stiff = 3.9, beyond = 0.01;
-  constexpr std::array y{soft, stiff}, x{soft + beyond, stiff + beyond};
-  const Method euler("explicit-euler");
-  std::array<double, 2> radius{};
-  spectral_radius(euler, x, y, radius);
-  const Eigen::Matrix2d a = euler.amplification(x[0], y[0]), b = euler.amplification(x[1], y[1]);
+  const auto step = [](double y) { return Method("explicit-euler").amplification(y + beyond, y); };
+  const Eigen::MatrixXd a = step(soft), b = step(stiff);
   Eigen::Vector2d state{1, 0.7};
   constexpr int periods = 200;
   double logarithm = 0;
@@ -39,7 +35,7 @@ Switching switching_oscillator() {
     logarithm += std::log(state.norm());
     state.normalize();
   }
-  return {radius[0], radius[1], std::exp(logarithm / (4 * periods))};
+  return {matrix_radius(a), matrix_radius(b), std::exp(logarithm / (4 * periods))};
 }
 
 Pendulum swinging_pendulum() {

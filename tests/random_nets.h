@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/spectra/transition_operator.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/scene/spring_cloth.h"
 

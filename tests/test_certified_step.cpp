@@ -1,6 +1,5 @@
 // The laws of stable steps under damping that does not commute with the stiffness: exact where a condition is
 // exact for matrices, proved otherwise, and never above the truth of dense eigenvalues.
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "analysis/spectra/generator_spectrum.h"
 #include "analysis/spectra/rigid_motions.h"
 #include "solvers/io/matrix_file.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "solvers/scene/every_pose.h"
 #include "tests/random_nets.h"

@@ -1,7 +1,6 @@
 // How costs grow, and how k0 is found again: fits, the power method, and races whose counts no clock changes.
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "analysis/spectra/spectrum.h"
 #include "experiments/studies/complexity/complexity_studies.h"
 #include "experiments/studies/complexity/k0_watch.h"
+#include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(complexity)
 
@@ -178,7 +178,8 @@ BOOST_AUTO_TEST_CASE(a_study_writes_a_complete_row_for_every_run) {
       BOOST_TEST(abscissa(study.study, series.points[i]) > abscissa(study.study, series.points[i - 1]));
       BOOST_TEST(series.points[i].counts.cg_iterations < series.points[i - 1].counts.cg_iterations);
     }
-  const auto path = std::filesystem::temp_directory_path() / "springstab_complexity_runs.csv";
+  const test::ScratchFolder folder;
+  const auto path = folder.path() / "runs.csv";
   write_runs(path.string(), study);
   std::ifstream file(path);
   std::string header, row;
@@ -199,7 +200,6 @@ BOOST_AUTO_TEST_CASE(a_study_writes_a_complete_row_for_every_run) {
     BOOST_TEST((row.find(",,") == std::string::npos && row.find("nan") == std::string::npos));
   }
   BOOST_TEST(rows == study.series.size() * study.series[0].points.size() * 3);
-  std::filesystem::remove(path);
 }
 
 // A Rayleigh quotient never exceeds the largest eigenvalue but for rounding and the reference's own error.

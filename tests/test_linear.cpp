@@ -1,7 +1,5 @@
 // The linear systems: their products and solves are those of the dense matrices that they stand for, and
 // matrices that no structure has are refused by name.
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "analysis/method.h"
 #include "solvers/linear/block_linear_system.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/matrix_system.h"
 
 BOOST_AUTO_TEST_SUITE(linear)

@@ -2,7 +2,6 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
-#include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <cstring>
@@ -15,6 +14,7 @@
 #include "analysis/regions/amplification.h"
 #include "analysis/regions/stability_region.h"
 #include "oracles.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/methods/list.h"
 #include "solvers/oscillator.h"

@@ -1,6 +1,5 @@
 // Methods that a user brings, among them ones that carry vectors beyond x and v: they have all that a
 // built-in one has, from nothing but their step.
-#include <Eigen/Eigenvalues>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <random>
@@ -13,6 +12,7 @@
 #include "analysis/spectra/spectrum.h"
 #include "analysis/spectra/transition_operator.h"
 #include "experiments/runs/checkpoint.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "solvers/simulation.h"
 #include "solvers/spring_chain.h"

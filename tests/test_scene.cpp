@@ -1,6 +1,5 @@
 // The laws of springs and of the scene that sums them: forces are differenced energies, K and D differenced
 // forces; and what pendulums, chains and falling particles are known to do.
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
@@ -12,14 +11,18 @@
 #include <vector>
 
 #include "analysis/method.h"
+#include "solvers/linear/dense_solvers.h"
+#include "solvers/linear/structural_matrices.h"
 #include "solvers/methods/rk4.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"
 #include "solvers/stepper.h"
+#include "tests/dense.h"
 
 BOOST_AUTO_TEST_SUITE(scene)
 
 using namespace springstab;
+using springstab::test::smallest_eigenvalue;
 
 namespace {
 
@@ -144,10 +147,6 @@ void check_equal(const Dense& found, const Dense& expected, double relative) {
   BOOST_REQUIRE_EQUAL(found.cols(), expected.cols());
   BOOST_TEST((found - expected).norm() <= relative * expected.norm(),
              "relative difference " << (found - expected).norm() / expected.norm());
-}
-
-double smallest_eigenvalue(const Dense& a) {
-  return Eigen::SelfAdjointEigenSolver<Dense>(a).eigenvalues()[0];
 }
 
 /// One particle on one spring to the origin: a pendulum of length l hanging in gravity along -y.

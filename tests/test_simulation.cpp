@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -18,24 +17,18 @@
 #include "solvers/scene/triangle_cloth.h"
 #include "solvers/simulation.h"
 #include "tests/allocation_counter.h"
+#include "tests/dense.h"
 
 BOOST_AUTO_TEST_SUITE(simulation)
 
 using namespace springstab;
+using springstab::test::random_vector;
 
 namespace {
 
 using boost::test_tools::tolerance;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Vector random_vector(Eigen::Index size, std::uint64_t seed) {
-  std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Vector v(size);
-  for (double& entry : v) entry = uniform(engine);
-  return v;
-}
 
 std::vector<int> first_row(int columns) {
   std::vector<int> row(columns);

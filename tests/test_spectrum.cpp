@@ -1,7 +1,5 @@
 // Spectra: what ARPACK finds is what is known of chains, membranes and real structures, k0 lies between its
 // two numbers, limits follow from it, and every way in which ARPACK can mislead is caught.
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
@@ -23,8 +21,10 @@
 #include "analysis/spectra/spectrum.h"
 #include "analysis/spectra/transition_operator.h"
 #include "solvers/io/matrix_file.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"
+#include "tests/random_nets.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(spectrum)
@@ -276,8 +276,8 @@ StructuralMatrices matrices_of(BlockLinearSystem& system) {
 double modal_radius(std::string_view method, const Vector& squares, RayleighDamping damping, double h) {
   double radius = 0;
   for (const double k : squares) {
-    const Eigen::Matrix2d a = Method(method).amplification(h * (damping.d0 + damping.alpha * k), h * h * k);
-    radius = std::max(radius, a.eigenvalues().cwiseAbs().maxCoeff());
+    const Dense a = Method(method).amplification(h * (damping.d0 + damping.alpha * k), h * h * k);
+    radius = std::max(radius, test::largest_modulus(a));
   }
   return radius;
 }

@@ -16,14 +16,19 @@
 #include "analysis/spectra/spectrum.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/tet_file.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/scene/mesh_repair.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/tet_solid.h"
+#include "tests/dense.h"
+#include "tests/refusals.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(tet_solid)
 
 using namespace springstab;
+using springstab::test::expect_error;
+using springstab::test::smallest_eigenvalue;
 
 namespace {
 
@@ -200,10 +205,6 @@ void check_equal(const Dense& found, const Dense& expected, double relative) {
              "relative difference " << (found - expected).norm() / expected.norm());
 }
 
-double smallest_eigenvalue(const Dense& a) {
-  return Eigen::SelfAdjointEigenSolver<Dense>(a).eigenvalues()[0];
-}
-
 /// K and M of the whole solid at rest, spring by spring: both kinds store ½ k (∇·δx)² there.
 std::pair<Dense, Vector> dense_matrices(const TetSolid& solid) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(solid.rest.size());
@@ -238,19 +239,9 @@ std::pair<Dense, Vector> dense_matrices(const TetSolid& solid) {
 double dense_k0(const TetSolid& solid) {
   const auto [k, mass] = dense_matrices(solid);
   const Vector root = mass.cwiseSqrt().cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<Dense>(root.asDiagonal() * k * root.asDiagonal())
+  return Eigen::SelfAdjointEigenSolver<Dense>(Dense(root.asDiagonal() * k * root.asDiagonal()))
       .eigenvalues()
       .maxCoeff();
-}
-
-void expect_error(const std::function<void()>& action, const std::string& place, const std::string& words) {
-  BOOST_CHECK_EXCEPTION(action(), InputError, [&](const InputError& error) {
-    const std::string text = error.what();
-    const bool good =
-        text.starts_with(place + ": ") && text.find(words) != text.npos && text.find("expected") != text.npos;
-    if (!good) BOOST_TEST_MESSAGE("\"" << text << "\" for " << place << ", " << words);
-    return good;
-  });
 }
 
 }  // namespace

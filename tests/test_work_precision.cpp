@@ -1,14 +1,10 @@
 // Error against run time: the references are right and as precise as they say, orders show, costs are
 // counted.
-#include <unistd.h>
-
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <span>
-#include <sstream>
 #include <string>
 
 #include "analysis/errors/linear_motion.h"
@@ -21,10 +17,13 @@
 #include "solvers/io/input_error.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/spring_chain.h"
+#include "tests/dense.h"
+#include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(work_precision)
 
 using namespace springstab;
+using springstab::test::random_vector;
 namespace fs = std::filesystem;
 
 namespace {
@@ -32,14 +31,6 @@ namespace {
 using boost::test_tools::tolerance;
 
 const CommonOptions quiet{.quiet = true};
-
-Vector random_vector(Eigen::Index size, unsigned seed) {
-  std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Vector u(size);
-  for (double& entry : u) entry = uniform(engine);
-  return u;
-}
 
 /// Masses and springs of all sizes.
 SpringChain uneven_chain(RayleighDamping damping = {0.3, 0.02}) {
@@ -66,13 +57,6 @@ Problem small_chain() {
 double gap(const State<Vector>& a, const State<Vector>& b) {
   return std::max((a.x - b.x).cwiseAbs().maxCoeff(), (a.v - b.v).cwiseAbs().maxCoeff());
 }
-
-/// A folder that is removed at the end.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("springstab precision " + std::to_string(getpid()));
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-};
 
 }  // namespace
 
@@ -259,19 +243,19 @@ BOOST_AUTO_TEST_CASE(both_kinds_of_reference_agree) {
 }
 
 BOOST_AUTO_TEST_CASE(a_reference_is_kept_under_what_the_problem_does) {
-  Folder folder;
+  const test::ScratchFolder folder;
   Problem problem = small_chain();
-  const Reference first = reference_motion(problem, folder.path);
-  const fs::path file = folder.path / fingerprint(problem);
+  const Reference first = reference_motion(problem, folder.path());
+  const fs::path file = folder.path() / fingerprint(problem);
   BOOST_REQUIRE(fs::exists(file));
   const auto written = fs::last_write_time(file);
-  const Reference second = reference_motion(problem, folder.path);
+  const Reference second = reference_motion(problem, folder.path());
   BOOST_TEST(second.error.trajectory == first.error.trajectory);
   for (std::size_t i = 0; i < first.trajectory.size(); ++i)
     BOOST_TEST(gap(first.trajectory[i], second.trajectory[i]) == 0);
   BOOST_CHECK(fs::last_write_time(file) == written);
   fs::resize_file(file, fs::file_size(file) - 8);  // a spoilt one is computed again
-  const Reference third = reference_motion(problem, folder.path);
+  const Reference third = reference_motion(problem, folder.path());
   BOOST_TEST(gap(third.trajectory.back(), first.trajectory.back()) == 0);
 
   const std::string same = fingerprint(problem);
@@ -383,11 +367,10 @@ BOOST_AUTO_TEST_CASE(a_plain_rk4_is_precise_at_its_limit_on_the_uniform_chain) {
 }
 
 BOOST_AUTO_TEST_CASE(every_row_of_the_file_is_whole_and_nothing_is_not_a_number) {
-  Folder folder;
-  fs::create_directories(folder.path);
+  const test::ScratchFolder folder;
   Problem problem = small_chain();
   const ContestResult result = run_contest(problem, "", {.time_limit = 0.02, .repetitions = 5}, quiet);
-  const std::string path = folder.path / "runs.csv";
+  const std::string path = folder.path() / "runs.csv";
   write_runs(path, result);
   std::ifstream file(path);
   std::string line;

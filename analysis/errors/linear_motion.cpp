@@ -1,11 +1,12 @@
 #include "analysis/errors/linear_motion.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
 #include <stdexcept>
+
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
 namespace {

@@ -1,12 +1,11 @@
 #include "analysis/proofs/lyapunov_step.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "analysis/constants.h"
 #include "analysis/spectra/spectrum.h"
 #include "analysis/spectra/transition_operator.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/matrix_system.h"
 
 namespace springstab {
@@ -57,10 +56,10 @@ LyapunovSteps::LyapunovSteps(const StructuralMatrices& s) {
   if (s.size() > unknowns_limit || !is_diagonal(s.mass) || !s.has_damping()) return;
   const Matrix k = symmetric_part(as_dense(scaled_stiffness(s)));
   const Matrix d = symmetric_part(as_dense(mass_scaled(s.damping, s.mass)));
-  const Eigen::SelfAdjointEigenSolver<Matrix> sum(k / k.norm() + d / d.norm());
+  const Eigen::SelfAdjointEigenSolver<Matrix> sum(Matrix(k / k.norm() + d / d.norm()));
   const Eigen::Index moving = (sum.eigenvalues().array() > rigid_eigenvalue).count();
   Matrix basis = sum.eigenvectors().rightCols(moving);
-  const Eigen::SelfAdjointEigenSolver<Matrix> modes(basis.transpose() * k * basis);
+  const Eigen::SelfAdjointEigenSolver<Matrix> modes(Matrix(basis.transpose() * k * basis));
   if (sum.info() != Eigen::Success || modes.info() != Eigen::Success) return;
   basis *= modes.eigenvectors();
   const Matrix size = basis.cwiseAbs();

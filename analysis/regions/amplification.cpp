@@ -1,8 +1,9 @@
 #include "analysis/regions/amplification.h"
 
-#include <Eigen/Eigenvalues>
 #include <limits>
 #include <stdexcept>
+
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
 

@@ -1,6 +1,5 @@
 #include "analysis/spectra/generator_spectrum.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "analysis/regions/stability_region.h"
 #include "analysis/spectra/spectrum.h"
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
 namespace {

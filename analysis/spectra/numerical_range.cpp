@@ -1,11 +1,11 @@
 #include "analysis/spectra/numerical_range.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/spectra/chebyshev_filter.h"
 #include "analysis/spectra/spectrum.h"
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
 namespace {
@@ -40,7 +40,8 @@ ExtremePoint NumericalRange::point(const Eigen::VectorXd& v) const {
 std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double tolerance,
                                                      const Eigen::VectorXd& near) const {
   if (size_ <= dense_limit) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a * dense_damping_ + b * dense_stiffness_);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+        Eigen::MatrixXd(a * dense_damping_ + b * dense_stiffness_));
     if (solver.info() != Eigen::Success) return std::nullopt;
     return point(solver.eigenvectors().rightCols<1>());
   }

@@ -1,6 +1,5 @@
 #include "analysis/spectra/spectrum.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "analysis/constants.h"
 #include "analysis/proofs/definiteness.h"
 #include "analysis/spectra/chebyshev_filter.h"
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
 namespace {

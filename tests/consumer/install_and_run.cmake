@@ -1,7 +1,9 @@
-# Installs BUILD (configuration CONFIG) below SCRATCH, then builds and runs the consumers against it.
+# Installs BUILD (configuration CONFIG) into a folder of its own beside SCRATCH, then builds and runs the
+# consumers against it. Where all goes well nothing is left.
 # CMAKE_CXX_FLAGS is given empty: whatever the environment says, the consumer has no -march.
 set(source ${CMAKE_CURRENT_LIST_DIR})
-file(REMOVE_RECURSE ${SCRATCH})
+string(RANDOM LENGTH 12 own)
+string(APPEND SCRATCH -${own})
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -30,3 +32,4 @@ if(NOT installed OR NOT EXISTS ${plots}/region.gp)
   message(FATAL_ERROR "the installed command looks for its plots in '${plots}', expected a folder with "
                       "region.gp below ${prefix}")
 endif()
+file(REMOVE_RECURSE ${SCRATCH})

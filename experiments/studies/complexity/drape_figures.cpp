@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/inputs/subject.h"
 #include "experiments/studies/complexity/k0_watch.h"
 #include "experiments/studies/figure_list.h"
 #include "experiments/studies/gnuplot.h"

@@ -1,6 +1,5 @@
 #include "experiments/studies/divergence/examples.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -27,8 +26,7 @@ Scene pendulum(double alpha) {
 Switching switching_oscillator() {
   constexpr double soft = 2.6, stiff = 3.9, beyond = 0.01;
   const auto step = [](double y) { return Method("explicit-euler").amplification(y + beyond, y); };
-  const auto radius = [](const Eigen::Matrix2d& a) { return a.eigenvalues().cwiseAbs().maxCoeff(); };
-  const Eigen::Matrix2d a = step(soft), b = step(stiff);
+  const Eigen::MatrixXd a = step(soft), b = step(stiff);
   Eigen::Vector2d state{1, 0.7};
   constexpr int periods = 200;
   double logarithm = 0;
@@ -37,7 +35,7 @@ Switching switching_oscillator() {
     logarithm += std::log(state.norm());
     state.normalize();
   }
-  return {radius(a), radius(b), std::exp(logarithm / (4 * periods))};
+  return {matrix_radius(a), matrix_radius(b), std::exp(logarithm / (4 * periods))};
 }
 
 Pendulum swinging_pendulum() {

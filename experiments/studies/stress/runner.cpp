@@ -1,6 +1,5 @@
 #include "experiments/studies/stress/runner.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,6 +10,7 @@
 #include "experiments/runs/measured_run.h"
 #include "experiments/runs/step_run.h"
 #include "solvers/io/input_error.h"
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
 namespace {

@@ -9,9 +9,9 @@
 namespace springstab {
 namespace {
 
-constexpr double inset = 1e-9;          // of an edge's distance from the origin
-constexpr double tangent_inset = 1e-5;  // of a tangent at a sample of the boundary
-constexpr double same = 1e-6;           // points nearer than this are one
+constexpr double edge_inset = 1e-9;      // of an edge's distance from the origin
+constexpr double tangent_inset = 1e-5;   // of a tangent at a sample of the boundary
+constexpr double point_distance = 1e-6;  // points nearer than this are one
 
 }  // namespace
 
@@ -51,12 +51,14 @@ InscribedPolygons::Chain InscribedPolygons::boundary_chain(const StabilityRegion
   std::vector<RegionPiece> pieces = region.pieces({0, box.x_max, 0, box.y_max});
   Chain top, bottom;
   const auto add = [](Chain& chain, double x, double y) {
-    if (chain.empty() || std::hypot(x - chain.back().x, y - chain.back().y) > same) chain.push_back({x, y});
+    if (chain.empty() || std::hypot(x - chain.back().x, y - chain.back().y) > point_distance)
+      chain.push_back({x, y});
   };
   double x = 0, lower = 0, upper = 0;
   for (const RegionPiece& piece : pieces) {
-    const bool follows = piece.x.front() <= x + same && piece.x.back() > x &&
-                         piece.y_lower.front() <= upper + same && piece.y_upper.front() >= lower - same;
+    const bool follows = piece.x.front() <= x + point_distance && piece.x.back() > x &&
+                         piece.y_lower.front() <= upper + point_distance &&
+                         piece.y_upper.front() >= lower - point_distance;
     if (!follows) continue;
     for (std::size_t i = 0; i < piece.x.size(); ++i) {
       add(top, piece.x[i], piece.y_upper[i]);
@@ -64,11 +66,11 @@ InscribedPolygons::Chain InscribedPolygons::boundary_chain(const StabilityRegion
     }
     x = piece.x.back(), lower = piece.y_lower.back(), upper = piece.y_upper.back();
   }
-  if (top.empty() || top.front().x > same || bottom.front().y > same) return {};
+  if (top.empty() || top.front().x > point_distance || bottom.front().y > point_distance) return {};
   top.front() = {0, top.front().y < 1e-4 ? 0 : top.front().y};
   if (top.front().y > 0) top.insert(top.begin(), {0, 0});
   for (auto p = bottom.rbegin(); p != bottom.rend(); ++p) {
-    if (p->y <= same) p->y = 0;
+    if (p->y <= point_distance) p->y = 0;
     add(top, p->x, p->y);
     if (p->y == 0) break;
   }
@@ -102,13 +104,14 @@ InscribedPolygons::Chain InscribedPolygons::cut(const Chain& chain, std::size_t 
   }
   Chain apart;  // crossings may coincide with samples
   for (const Vertex& p : part)
-    if (apart.empty() || std::hypot(p.x - apart.back().x, p.y - apart.back().y) > same) apart.push_back(p);
+    if (apart.empty() || std::hypot(p.x - apart.back().x, p.y - apart.back().y) > point_distance)
+      apart.push_back(p);
   return apart;
 }
 
 // Every edge, and the fan of segments from the origin to the vertices, checked by Jury's polynomials on them.
 bool InscribedPolygons::is_inside(const StabilityRegion& region, const Chain& chain) {
-  const double shrink = 1 - inset;
+  const double shrink = 1 - edge_inset;
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const double x = shrink * chain[i].x, y = shrink * chain[i].y;
     if (!region.closed_segment_is_stable(0, 0, x, y)) return false;
@@ -121,7 +124,7 @@ bool InscribedPolygons::is_inside(const StabilityRegion& region, const Chain& ch
 HalfPlane InscribedPolygons::edge(const Vertex& p, const Vertex& q) {
   const HalfPlane side{p.y - q.y, q.x - p.x, 0};
   const bool from_origin = p.x == 0 && p.y == 0;
-  return {side.x, side.y, from_origin ? 0 : (side.x * p.x + side.y * p.y) * (1 - inset)};
+  return {side.x, side.y, from_origin ? 0 : (side.x * p.x + side.y * p.y) * (1 - edge_inset)};
 }
 
 // Vertices of the chain are added where the modes touch an edge, and those that are not needed removed: a

@@ -40,11 +40,11 @@ Switching switching_oscillator() {
 
 Pendulum swinging_pendulum() {
   const StabilityRegion& region = stability_region("linearized-explicit-euler");
-  const double k0 = rod_stiffness / bob_mass, safety = 1.5, linearize_every = 0.05, duration = 20;
+  const double k0 = rod_stiffness / bob_mass, safety = 1.5, interval = 0.05, duration = 20;
   const double fitted = design_damping(region, safety * k0, 0).h_max;
-  const long each = std::lround(std::ceil(linearize_every / fitted));
+  const long each = std::lround(std::ceil(interval / fitted));
   Pendulum result;
-  result.step = linearize_every / static_cast<double>(each);
+  result.step = interval / static_cast<double>(each);
   const double alpha = designed_alpha(region, result.step, 0);
   const long steps = std::lround(duration / result.step);
 

@@ -221,12 +221,12 @@ BOOST_FIXTURE_TEST_CASE(a_texture_unit_without_a_map_is_one_line, springstab::te
     return run.err;
   };
   const std::string unit = R"(, "texture_unit": 1)", grid = R"("grid": [3, 3], "spacing": 0.1)",
-                    plain = R"("mesh": "plain.obj")", folded = R"("mesh": "folded.obj")";
+                    plain = R"("mesh": "plain.obj")", creased = R"("mesh": "folded.obj")";
   for (const std::string& geometry : {grid, plain}) {
     BOOST_TEST(said(geometry, unit).starts_with("springstab: note: texture_unit: is not used: "));
     BOOST_TEST(said(geometry, "") == "");
   }
-  BOOST_TEST(said(folded, unit) == "");
+  BOOST_TEST(said(creased, unit) == "");
 }
 
 BOOST_AUTO_TEST_CASE(a_published_cloth_keeps_its_coordinates) {

@@ -20,7 +20,8 @@ std::string method_names() {
 }
 
 void add_input(CLI::App& command, InputOptions& input) {
-  command.add_option("INPUT", input.file, "SCENE.json, a surface .obj, or tetrahedra .msh, .veg, .vtk")
+  command
+      .add_option("INPUT", input.file, "SCENE.json, a surface .obj, tetrahedra .veg, or either .msh, .vtk")
       ->type_name("FILE");
   command
       .add_option("--grid", input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
@@ -37,6 +38,8 @@ void add_input(CLI::App& command, InputOptions& input) {
       ->type_name("FILE");
   command.add_option("--mass", input.mass, "M (default: the unit matrix)")->type_name("FILE");
   command.add_option("--damping-matrix", input.damping_matrix, "D (default: none)")->type_name("FILE");
+  command.add_flag("--sum-duplicates", input.sum_duplicates,
+                   "add up entries of a matrix file that have one position");
 }
 
 // For the commands that keep what they have finished.

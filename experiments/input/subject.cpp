@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <random>
 #include <type_traits>
 
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
-#include "solvers/io/obj.h"
-#include "solvers/io/tet_file.h"
+#include "solvers/io/mesh_file.h"
 #include "solvers/scene/every_pose.h"
 
 namespace springstab {
@@ -85,7 +83,7 @@ SceneDescription describe(const InputOptions& options) {
     description.geometry = grid;
   }
   description.material = named_material(options.material.empty() ? "default" : options.material,
-                                        description.geometry, "--material", 0);
+                                        is_solid(description.geometry), "--material", 0);
   if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
   return description;
 }
@@ -149,8 +147,8 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
                      std::string(given == 0 ? "nothing was given" : "more than one was given") +
                          ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
   if (options.stiffness.empty()) {
-    if (!options.mass.empty() || !options.damping_matrix.empty())
-      throw InputError("input", 0, "--mass and --damping-matrix go with --stiffness");
+    if (!options.mass.empty() || !options.damping_matrix.empty() || options.sum_duplicates)
+      throw InputError("input", 0, "--mass, --damping-matrix and --sum-duplicates go with --stiffness");
     build_scene(describe(options));
   } else {
     build_matrices(options, any_matrices);
@@ -160,7 +158,10 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
 void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   if (options.spacing || !options.material.empty() || !options.pin.empty())
     throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
-  const auto read = [](const std::string& path) { return path.empty() ? SparseMatrix() : read_matrix(path); };
+  const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
+  const auto read = [&](const std::string& path) {
+    return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
+  };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix})
@@ -182,29 +183,26 @@ void Subject::build_scene(const SceneDescription& description) {
     return;
   }
   const std::string& file = std::get<std::string>(description.geometry);
-  if (is_tet_file(file)) return build_solid(file, description);
-  if (!ends_with(file, ".obj") && std::filesystem::path(file).has_extension())  // a pipe has none
-    throw InputError(
-        file, 0,
-        "is of no known kind, expected a suffix: .json for a scene, .obj for a surface, .msh, .veg "
-        "or .vtk for tetrahedra");
-  build_surface(file, description);
+  AnyMesh mesh = read_mesh(file);
+  if (auto* solid = std::get_if<TetMesh>(&mesh)) return build_solid(std::move(*solid), description);
+  build_surface(std::move(std::get<Mesh>(mesh)), description);
 }
 
-void Subject::build_surface(const std::string& file, const SceneDescription& description) {
-  Mesh original = read_obj(file);
+void Subject::build_surface(Mesh original, const SceneDescription& description) {
+  const std::string& file = original.source;
   for (int f = 0; f < original.faces(); ++f)
     faces_.emplace_back(original.face(f).begin(), original.face(f).end());
   RepairedMesh mended = repaired(original);
-  mesh_file_ = MeshFile{file, false, std::move(original.vertices), std::move(mended.repair)};
+  mesh_file_ = MeshFile{file, false, std::move(original.vertices), std::move(mended.repair),
+                        std::move(original.notes)};
   visit_cloth(description.material, file,
               [&](const auto& material) { place(make(mended.mesh, material), description, nullptr, file); });
 }
 
-void Subject::build_solid(const std::string& file, const SceneDescription& description) {
+void Subject::build_solid(TetMesh original, const SceneDescription& description) {
+  const std::string& file = original.source;
   const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
   if (!material) throw InputError(file, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
-  TetMesh original = read_tets(file);
   auto [mesh, repair] = repaired(original);
   std::vector<int> of_file(mesh.vertices.size());  // the first vertex that each one was
   for (std::size_t v = repair.vertex.size(); v-- > 0;)
@@ -213,7 +211,8 @@ void Subject::build_solid(const std::string& file, const SceneDescription& descr
     for (int& v : face) v = of_file[v];
     faces_.push_back(std::move(face));
   }
-  mesh_file_ = MeshFile{file, true, std::move(original.vertices), std::move(repair)};
+  mesh_file_ =
+      MeshFile{file, true, std::move(original.vertices), std::move(repair), std::move(original.notes)};
   place(make_solid(mesh, *material), description, nullptr, file);
 }
 

@@ -22,6 +22,7 @@ struct InputOptions {
   std::optional<double> spacing;  // [m], with grid
   std::string material, pin;      // with grid or a mesh
   std::string stiffness, mass, damping_matrix;
+  bool sum_duplicates = false;  // of these matrices' entries
 };
 
 /// A mesh file as it was, and what was mended to make a scene of it.
@@ -30,6 +31,7 @@ struct MeshFile {
   bool solid;                             // of tetrahedra
   std::vector<Eigen::Vector3d> vertices;  // [m]
   MeshRepair repair;
+  std::vector<FileNote> notes;  // on what its reader left out
 
   // of a cloth of triangles:
   std::optional<RestShape> rest_shape{};
@@ -80,8 +82,8 @@ class Subject {
 
  private:
   void build_scene(const SceneDescription& description);
-  void build_surface(const std::string& file, const SceneDescription& description);
-  void build_solid(const std::string& file, const SceneDescription& description);
+  void build_surface(Mesh original, const SceneDescription& description);
+  void build_solid(TetMesh original, const SceneDescription& description);
   template <class Cloth>
   void place(const Cloth& cloth, const SceneDescription& description, const Grid* grid,
              const std::string& source);

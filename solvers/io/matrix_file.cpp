@@ -29,13 +29,13 @@ bool is_harwell_boeing_suffix(std::string_view suffix) {
 
 }  // namespace
 
-Eigen::SparseMatrix<double> read_matrix(const std::string& path) {
+Eigen::SparseMatrix<double> read_matrix(const std::string& path, Duplicates duplicates) {
   const std::string text = read_text_file(path);
-  if (has_matrix_market_banner(text)) return parse_matrix_market(path, text);
-  if (looks_like_harwell_boeing(text)) return parse_harwell_boeing(path, text);
+  if (has_matrix_market_banner(text)) return parse_matrix_market(path, text, duplicates);
+  if (looks_like_harwell_boeing(text)) return parse_harwell_boeing(path, text, duplicates);
   const std::string suffix = lowercase_suffix(path);
-  if (suffix == ".mtx" || suffix == ".mm") return parse_matrix_market(path, text);
-  if (is_harwell_boeing_suffix(suffix)) return parse_harwell_boeing(path, text);
+  if (suffix == ".mtx" || suffix == ".mm") return parse_matrix_market(path, text, duplicates);
+  if (is_harwell_boeing_suffix(suffix)) return parse_harwell_boeing(path, text, duplicates);
   throw InputError(
       path, 1,
       "neither a Matrix Market banner nor a Harwell-Boeing header, expected a file that begins with "

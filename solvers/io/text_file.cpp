@@ -36,6 +36,27 @@ void wait_for_writer(int pipe) {
   fcntl(pipe, F_SETFL, 0);
 }
 
+std::string lowercase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+/// Of a decimal number outside the range of double precision, whether it lies below that range: whether the
+/// power of ten of its first digit that is not 0 is negative.
+bool is_tiny(std::string_view number) {
+  const std::size_t letter = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view mantissa = number.substr(0, letter);
+  const auto point = static_cast<long long>(std::min(mantissa.find('.'), mantissa.size()));
+  const auto digit = static_cast<long long>(mantissa.find_first_of("123456789"));
+  const std::string_view power = without_plus(number.substr(std::min(letter + 1, number.size())));
+  long long exponent = 0;
+  const auto error = std::from_chars(power.data(), power.data() + power.size(), exponent).ec;
+  if (error == std::errc::result_out_of_range) return power.starts_with('-');
+  return exponent < digit - point + (digit < point ? 1 : 0);
+}
+
 }  // namespace
 
 std::string read_text_file(const std::string& path) {
@@ -68,9 +89,10 @@ std::string read_text_file(const std::string& path) {
     const std::size_t before = text.size();
     text.append(buffer.data(), read);
     check_size(text.size());
-    if (const std::size_t zero = text.find('\0', before); zero != text.npos)
-      Location{path, 1 + static_cast<long>(std::count(text.begin(), text.begin() + zero, '\n'))}.fail(
-          "a zero byte, expected text in ASCII or UTF-8");
+    if (const std::size_t zero = text.find('\0', before); zero != text.npos) {
+      const long lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+      Location{path, 1 + lines}.fail(binary_file_message(text));
+    }
   }
   if (std::ferror(file.get())) fail("cannot be read", errno);
   if (text.empty()) throw InputError(path, 0, "the file is empty, expected text");
@@ -81,16 +103,36 @@ void Location::fail(const std::string& message) const {
   throw InputError(std::string(source), line, message);
 }
 
-double Location::real(std::string_view word) const {
-  const std::string_view number = without_plus(word);
+std::string binary_file_message(std::string_view beginning) {
+  const auto begins = [&](std::string_view magic) { return beginning.starts_with(magic); };
+  return std::string("the file is binary, expected text") +
+         (begins("$MeshFormat")      ? ": `gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
+          : begins("# vtk DataFile") ? ": saved as ASCII (ParaView's file type, SetFileTypeToASCII in VTK)"
+          : begins("\x1f\x8b")       ? ": `gunzip` unpacks it"
+                                     : " in ASCII or UTF-8");
+}
+
+double Location::real_shown_as(std::string_view number, std::string_view word) const {
+  number = without_plus(number);
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (error == std::errc::invalid_argument || end != number.data() + number.size())
+  const bool whole = end == number.data() + number.size();
+  if (error == std::errc() && whole && std::isfinite(value)) return value;
+  if (is_not_finite(word)) fail(quoted(word) + " is not finite, expected a finite number");
+  if (error != std::errc::result_out_of_range || !whole)
     fail(quoted(word) + " is not a number, expected one such as 1.5 or -2e-3");
-  if (error == std::errc::result_out_of_range)
+  if (!is_tiny(number))
     fail(quoted(word) + " is out of range, expected a number that fits in double precision");
-  if (!std::isfinite(value)) fail(quoted(word) + " is not finite, expected a finite number");
-  return value;
+  return number.starts_with('-') ? -0.0 : 0.0;
+}
+
+double Location::fortran_real(std::string_view word) const {
+  const std::size_t exponent = word.find_first_of("DdQqEe+-", 1);
+  if (exponent == word.npos || word[exponent] == 'e' || word[exponent] == 'E') return real(word);
+  const bool letter = word[exponent] != '+' && word[exponent] != '-';
+  const std::string number =
+      std::string(word.substr(0, exponent)) + 'e' + std::string(word.substr(exponent + letter));
+  return real_shown_as(number, word);
 }
 
 long long Location::integer(std::string_view word) const {
@@ -118,11 +160,19 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
 }
 
-void append_words(std::string_view line, std::vector<std::string_view>& words) {
+bool is_not_finite(std::string_view word) {
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  if (word.starts_with("1.#")) return true;  // what the C library of MSVC prints
+  const std::string lower = lowercase(word);
+  return lower == "nan" || lower.starts_with("nan(") || lower == "inf" || lower == "infinity";
+}
+
+bool append_words(std::string_view line, std::vector<std::string_view>& words, char comment) {
   std::size_t end = 0;
   while (true) {
     const std::size_t begin = line.find_first_not_of(blanks, end);
-    if (begin == line.npos) return;
+    if (begin == line.npos) return true;
+    if (line[begin] == comment) return false;
     end = std::min(line.find_first_of(blanks, begin), line.size());
     words.push_back(line.substr(begin, end - begin));
   }
@@ -135,10 +185,11 @@ LineReader::LineReader(std::string_view source, std::string_view text) : rest_(t
 
 bool LineReader::next() {
   if (rest_.empty()) return false;
-  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  const auto end = static_cast<std::size_t>(std::ranges::find_if(rest_, ends_line) - rest_.begin());
   line_ = rest_.substr(0, end);
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
-  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  const bool two = rest_.substr(end).starts_with("\r\n");
+  rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
   ++at_.line;
   return true;
 }

@@ -11,8 +11,12 @@ namespace springstab {
 
 /// The whole file, or what comes through a pipe. Throws InputError where there is no text of at most 2^31 - 1
 /// bytes: missing, unreadable, a directory, a device (which may have no end), empty, with a zero byte (which
-/// no text has, but the hole of a sparse file does), or a pipe that nobody opens for writing within a second.
+/// no text has, but a binary file does and the hole of a sparse one), or a pipe that nobody opens for writing
+/// within a second.
 std::string read_text_file(const std::string& path);
+
+/// "the file is binary, expected ...": with what makes text of it, where its beginning tells the format.
+std::string binary_file_message(std::string_view beginning);
 
 /// A line (from 1) of a source; what is read from it fails with an InputError that names it.
 struct Location {
@@ -21,8 +25,13 @@ struct Location {
 
   [[noreturn]] void fail(const std::string& message) const;
 
-  /// `word` as a finite number: "1", "+.5", "-2e-3", never "inf", "0x1" or "1,5".
-  double real(std::string_view word) const;
+  /// `word` as a finite number: "1", "+.5", "-2e-3", never "inf", "1.#QNAN", "0x1" or "1,5". One that is too
+  /// small for double precision is 0.
+  double real(std::string_view word) const { return real_shown_as(word, word); }
+  /// The same, with exponents as Fortran writes them, too: "1D2", "1d2", "1q2" and "1.5-103".
+  double fortran_real(std::string_view word) const;
+  /// `number`, which messages quote as `word`.
+  double real_shown_as(std::string_view number, std::string_view word) const;
   /// `word` as a decimal integer.
   long long integer(std::string_view word) const;
 };
@@ -33,10 +42,14 @@ std::string quoted(std::string_view word);
 /// `text` without its leading and trailing blanks.
 std::string_view trimmed(std::string_view text);
 
-/// Appends the blank-separated words of `line`, as views into it.
-void append_words(std::string_view line, std::vector<std::string_view>& words);
+/// Whether `word` is how some program writes what is no finite number: "nan", "-inf", "1.#IND00".
+bool is_not_finite(std::string_view word);
 
-/// Walks through a text line by line. Lines end in LF or CR LF; a UTF-8 byte order mark is skipped.
+/// Appends the blank-separated words of `line`, as views into it, up to one that begins with the sign of a
+/// comment: within a word that sign begins none. Returns whether there was no comment.
+bool append_words(std::string_view line, std::vector<std::string_view>& words, char comment = '\n');
+
+/// Walks through a text line by line. Lines end in LF, CR LF or CR; a UTF-8 byte order mark is skipped.
 /// Source and text must outlive the reader.
 class LineReader {
  public:

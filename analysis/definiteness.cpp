@@ -2,12 +2,11 @@
 
 #include <Eigen/SparseCholesky>
 #include <cmath>
-#include <limits>
+
+#include "analysis/constants.h"
 
 namespace springstab {
 namespace {
-
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
 Eigen::VectorXd row_sums(const SparseMatrix& a) { return a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()); }
 

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 
+#include "analysis/constants.h"
 #include "analysis/generator_spectrum.h"
 
 namespace springstab {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index shift_invert_limit = 20'000;
 constexpr double near_enough = 0.9;  // certified / estimate
 

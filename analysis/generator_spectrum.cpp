@@ -12,7 +12,7 @@
 namespace springstab {
 namespace {
 
-constexpr double rigid = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
+constexpr double rigid_rate = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
 constexpr double accurate = 1e-6;
 
 // A function of the generator commutes with it; symplectic Euler's matrix does not.
@@ -60,7 +60,7 @@ std::optional<std::vector<std::complex<double>>> generator_spectrum(const Struct
   if (solver.info() != Eigen::Success) return std::nullopt;
   std::vector<std::complex<double>> modes;
   for (const std::complex<double> mu : solver.eigenvalues())
-    if (std::abs(mu) > rigid) modes.push_back(generator->rate * mu);
+    if (std::abs(mu) > rigid_rate) modes.push_back(generator->rate * mu);
   return modes;
 }
 
@@ -74,7 +74,7 @@ std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s)
   std::vector<DampedMode> modes;
   for (Eigen::Index j = 0; j < vectors.cols(); ++j) {
     const std::complex<double> mu = solver.eigenvalues()[j];
-    if (!(std::abs(mu) > rigid)) continue;
+    if (!(std::abs(mu) > rigid_rate)) continue;
     const Eigen::VectorXcd v = vectors.col(j).normalized();
     modes.push_back({rate * mu, rate * v.dot(generator->damping * v).real(),
                      rate * rate * v.dot(generator->stiffness * v).real()});

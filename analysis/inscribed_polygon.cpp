@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <string>
 
+#include "analysis/constants.h"
 #include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double inset = 1e-9;          // of an edge's distance from the origin
 constexpr double tangent_inset = 1e-5;  // of a tangent at a sample of the boundary
 constexpr double same = 1e-6;           // points nearer than this are one

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
 
+#include "analysis/constants.h"
 #include "analysis/spectrum.h"
 #include "analysis/step_magnitude.h"
 #include "analysis/transition_operator.h"
@@ -16,8 +16,7 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
-constexpr double rigid = 1e-12;  // of K' + D', each of unit size
+constexpr double rigid_eigenvalue = 1e-12;  // of K' + D', each of unit size
 
 // One step of length 1 in the unit of time h.
 Matrix transition_matrix(const Matrix& stiffness, const Matrix& damping, std::string_view method) {
@@ -61,7 +60,7 @@ LyapunovSteps::LyapunovSteps(const StructuralMatrices& s) {
   const Matrix k = symmetric_part(as_dense(scaled_stiffness(s)));
   const Matrix d = symmetric_part(as_dense(mass_scaled(s.damping, s.mass)));
   const Eigen::SelfAdjointEigenSolver<Matrix> sum(k / k.norm() + d / d.norm());
-  const Eigen::Index moving = (sum.eigenvalues().array() > rigid).count();
+  const Eigen::Index moving = (sum.eigenvalues().array() > rigid_eigenvalue).count();
   Matrix basis = sum.eigenvectors().rightCols(moving);
   const Eigen::SelfAdjointEigenSolver<Matrix> modes(basis.transpose() * k * basis);
   if (sum.info() != Eigen::Success || modes.info() != Eigen::Success) return;

@@ -16,7 +16,7 @@
 namespace springstab {
 namespace {
 
-constexpr int samples = 128;  // points of an arc
+constexpr int arc_samples = 128;  // points of an arc
 
 using Intervals = std::vector<StableInterval>;
 
@@ -106,8 +106,8 @@ std::vector<RegionPiece> StabilityRegion::pieces(const Window& window) const {
 std::vector<StabilityRegion::Column> StabilityRegion::sample(const Piece& piece, const Window& window) const {
   std::vector<Column> columns;
   const double inset = 1e-11 * std::max(piece.right - piece.left, 1e-3);
-  for (int i = 0; i <= samples; ++i) {
-    const double x = std::clamp(cosine_point(piece.left, piece.right, std::numbers::pi * i / samples),
+  for (int i = 0; i <= arc_samples; ++i) {
+    const double x = std::clamp(cosine_point(piece.left, piece.right, std::numbers::pi * i / arc_samples),
                                 piece.left + inset, piece.right - inset);
     Column c = column(x, window.y_min, window.y_max);
     if (c.intervals.size() == piece.inner.intervals.size()) columns.push_back(std::move(c));

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "analysis/chebyshev_filter.h"
+#include "analysis/constants.h"
 #include "analysis/definiteness.h"
 
 namespace springstab {
@@ -18,7 +19,6 @@ namespace {
 using Cholesky = Eigen::SimplicialLLT<SparseMatrix>;
 
 constexpr Eigen::Index nonsymmetric_limit = 400;
-constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
 Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
@@ -164,7 +164,7 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
   StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op, options)
                       : s.size() <= dense_limit ? dense_spectrum(op)
                                                 : arpack_spectrum(op, options);
-  mode.upper_bound = std::numeric_limits<double>::infinity();
+  mode.upper_bound = infinity;
   return mode;
 }
 

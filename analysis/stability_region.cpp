@@ -11,6 +11,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "analysis/constants.h"
 #include "analysis/gsl_function.h"
 #include "analysis/region_pieces.h"
 #include "solvers/stepper.h"
@@ -18,8 +19,7 @@
 namespace springstab {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 1e-14;  // relative to the terms that cancel: a sign below it is not known
+constexpr double cancellation = 1e-14;  // relative to the terms that cancel: a sign below it is not known
 constexpr double neutrality =
     1e-12;  // a condition violated by less, relative to its terms, counts as neutral
 
@@ -144,9 +144,9 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
   bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double t = between(cuts[i].t, cuts[i + 1].t);
-    const bool stable =
-        cuts[i].t < cuts[i + 1].t &&
-        std::all_of(jury.begin(), jury.end(), [&](const Condition& c) { return c.sign(t, rounding) > 0; });
+    const bool stable = cuts[i].t < cuts[i + 1].t &&
+                        std::all_of(jury.begin(), jury.end(),
+                                    [&](const Condition& c) { return c.sign(t, cancellation) > 0; });
     if (stable && touching) {
       found.back().upper = cuts[i + 1].t;
       found.back().upper_bound = cuts[i + 1].bound;

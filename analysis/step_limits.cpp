@@ -5,18 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "analysis/constants.h"
 #include "analysis/gsl_function.h"
 
 namespace springstab {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const RayleighModes& m) {
   for (double value : {m.k_min, m.k_max, m.d0, m.alpha})

@@ -9,7 +9,7 @@
 namespace springstab {
 namespace {
 
-constexpr int samples = 256;       // of a line of modes
+constexpr int line_samples = 256;  // of a line of modes
 constexpr double forgotten = 0.1;  // a power this small beside the largest will not exceed it
 
 double spectral_norm(const Eigen::Matrix2d& a) {
@@ -39,8 +39,8 @@ double transient_growth(std::string_view method, double x, double y, long steps)
 
 double transient_growth(std::string_view method, const RayleighModes& modes, double h) {
   double largest = 1;
-  for (int i = 1; i <= samples; ++i) {
-    const double k = modes.k_min + (modes.k_max - modes.k_min) * i / samples;
+  for (int i = 1; i <= line_samples; ++i) {
+    const double k = modes.k_min + (modes.k_max - modes.k_min) * i / line_samples;
     if (k > 0)
       largest = std::max(largest, transient_growth(method, h * (modes.d0 + modes.alpha * k), h * h * k));
   }

@@ -14,7 +14,7 @@ namespace springstab {
 namespace {
 
 constexpr std::chrono::milliseconds least_interval{200};
-constexpr int share = 100;  // of the time that saving takes, between savings
+constexpr int saving_share = 100;  // of the time that saving takes, between savings
 constexpr std::size_t hash_digits = 16;
 
 Json json_of(const RunSoFar& run) {
@@ -96,7 +96,7 @@ void CheckpointFile::save(const KeptRun& kept) {
   file.commit();
   saved_until_ = kept.run.time;
   const Clock::time_point after = Clock::now();
-  due_ = after + std::max<Clock::duration>(least_interval, share * (after - before));
+  due_ = after + std::max<Clock::duration>(least_interval, saving_share * (after - before));
 }
 
 void CheckpointFile::finish() const {

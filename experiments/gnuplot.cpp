@@ -32,7 +32,7 @@ void run_gnuplot(const std::string& settings, const std::string& script) {
 }
 
 /// gnuplot succeeds on a full disk, too; a figure that was written whole ends as its format does.
-bool ends_with(const std::string& path, const std::string& ending) {
+bool file_ends_with(const std::string& path, const std::string& ending) {
   std::ifstream file(path, std::ios::binary);
   std::string last(ending.size(), '\0');
   file.seekg(-static_cast<std::streamoff>(ending.size()), std::ios::end);
@@ -64,7 +64,8 @@ std::vector<std::string> draw(const std::string& script, const std::string& sett
     const Removed at_the_end{aside};
     run_gnuplot(settings + "type=" + gnuplot_literal(type) + "; output_file=" + gnuplot_literal(aside),
                 script);
-    if (!ends_with(aside, ending)) throw InputError(target, 0, "cannot be written whole (is the disk full?)");
+    if (!file_ends_with(aside, ending))
+      throw InputError(target, 0, "cannot be written whole (is the disk full?)");
     std::filesystem::rename(aside, target);
     files.push_back(target);
   }

@@ -21,7 +21,7 @@ void say_and_exit(int) {
   const char* rest = message.data();
   std::size_t left = message.size();
   while (left > 0) {
-    const ssize_t n = write(STDERR_FILENO, rest, left);
+    const ssize_t n = ::write(STDERR_FILENO, rest, left);
     if (n <= 0) break;
     rest += n;
     left -= static_cast<std::size_t>(n);

@@ -81,7 +81,7 @@ void Journal::append(const Json& json) {
   if (!all_finite(json)) throw std::logic_error("a number in a piece is not finite");
   const std::string content = json.dump(), line = hash_of(content) + ' ' + content + '\n';
   for (std::size_t done = 0; done < line.size();) {
-    const ssize_t n = write(file_.descriptor, line.data() + done, line.size() - done);
+    const ssize_t n = ::write(file_.descriptor, line.data() + done, line.size() - done);
     if (n < 0) throw failure(path_);
     done += static_cast<std::size_t>(n);
   }

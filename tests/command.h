@@ -2,7 +2,6 @@
 #pragma once
 
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+
+#include "tests/scratch.h"
 
 namespace springstab::test {
 
@@ -26,27 +27,17 @@ struct Outcome {
 /// A folder of its own per test case, removed at the end.
 class Command {
  public:
-  Command()
-      : folder_(std::filesystem::temp_directory_path() / ("springstab command " + std::to_string(getpid()))) {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Command() { std::filesystem::remove_all(folder_); }
-  Command(const Command&) = delete;
-  Command& operator=(const Command&) = delete;
-
   std::filesystem::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name) << content;
-    return folder_ / name;
+    return folder_.file(name, content);
   }
-  std::filesystem::path folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
   Outcome operator()(const std::string& arguments) const { return shell("\"$springstab\" " + arguments); }
 
   /// Any line for the shell, in the folder; its $springstab is the command. stderr is caught too.
   Outcome shell(const std::string& line) const {
-    const std::filesystem::path err = folder_ / "stderr";
-    const std::string whole = "cd '" + folder_.string() + "' && springstab='" SPRINGSTAB_COMMAND "' && { " +
+    const std::filesystem::path err = folder() / "stderr";
+    const std::string whole = "cd '" + folder().string() + "' && springstab='" SPRINGSTAB_COMMAND "' && { " +
                               line + "\n} 2>'" + err.string() + "'";
     FILE* pipe = popen(whole.c_str(), "r");
     BOOST_REQUIRE(pipe);
@@ -65,7 +56,7 @@ class Command {
   }
 
  private:
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
 };
 
 inline long lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }

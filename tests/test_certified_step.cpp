@@ -23,6 +23,8 @@
 #include "tests/random_nets.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(certified_step)
+
 using namespace springstab;
 using namespace springstab::test;
 using boost::test_tools::tolerance;
@@ -116,8 +118,6 @@ std::vector<double> certified_shares(const Certify& certify, std::string_view me
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(certified_step)
 
 BOOST_AUTO_TEST_CASE(symplectic_euler_is_exact_and_the_others_are_not) {
   for (const MethodInfo& method : all_methods())

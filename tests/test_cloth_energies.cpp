@@ -20,6 +20,8 @@
 #include "solvers/scene/condition_damping.h"
 #include "solvers/scene/triangle_cloth.h"
 
+BOOST_AUTO_TEST_SUITE(cloth_energies)
+
 using namespace springstab;
 
 namespace {
@@ -323,8 +325,6 @@ void expect_error(const std::function<void()>& action, const std::string& place,
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(cloth_energies)
 
 // --- what the energies are ---
 

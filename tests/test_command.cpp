@@ -10,6 +10,8 @@
 
 #include "tests/command.h"
 
+BOOST_FIXTURE_TEST_SUITE(command, springstab::test::Command)
+
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using springstab::test::Command;
@@ -35,8 +37,6 @@ const char* square =
     "f 1 2 3 4\n";
 
 }  // namespace
-
-BOOST_FIXTURE_TEST_SUITE(command, Command)
 
 BOOST_AUTO_TEST_CASE(methods_are_listed_with_their_constants) {
   const Outcome run = (*this)("methods --json");

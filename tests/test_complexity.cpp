@@ -13,9 +13,9 @@
 #include "experiments/complexity/k0_watch.h"
 #include "solvers/stepper.h"
 
-using namespace springstab;
-
 BOOST_AUTO_TEST_SUITE(complexity)
+
+using namespace springstab;
 
 BOOST_AUTO_TEST_CASE(an_exact_power_law_is_found_again) {
   const std::vector<double> x{1e-3, 0.4, 7, 2e5};

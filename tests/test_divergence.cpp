@@ -11,9 +11,9 @@
 #include "tests/command.h"
 #include "tests/random_nets.h"
 
-using namespace springstab;
-
 BOOST_AUTO_TEST_SUITE(divergence)
+
+using namespace springstab;
 
 // The least factor whose recommended step is h: recommended_step undoes it.
 BOOST_AUTO_TEST_CASE(the_safety_for_a_step_recommends_that_step) {

@@ -11,6 +11,8 @@
 
 #include "tests/command.h"
 
+BOOST_FIXTURE_TEST_SUITE(hostile, springstab::test::Command)
+
 namespace fs = std::filesystem;
 using springstab::test::Command;
 using springstab::test::lines;
@@ -46,8 +48,6 @@ constexpr bool limits_memory = true;
 const std::string in_little_memory = limits_memory ? "ulimit -v 400000; " : "";  // [kB]
 
 }  // namespace
-
-BOOST_FIXTURE_TEST_SUITE(hostile, Command)
 
 BOOST_AUTO_TEST_CASE(what_is_no_text_is_refused_at_once_and_in_little_memory) {
   const std::string header = matrix.substr(0, matrix.find("1 1"));

@@ -16,6 +16,8 @@
 #include "solvers/linear/matrix_system.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(linear)
+
 using namespace springstab;
 
 namespace {
@@ -165,8 +167,6 @@ void expect_refused(const std::function<void()>& action, const std::string& word
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(linear)
 
 BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
   Random random(11);

@@ -16,6 +16,8 @@
 #include "solvers/stepper.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(mesh_repair)
+
 using namespace springstab;
 
 namespace {
@@ -91,8 +93,6 @@ const std::string nasty =
     "f 2 3 4\nf 5 7 6\nf 3 5 4\nf 4 7 3\n";
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(mesh_repair)
 
 BOOST_AUTO_TEST_CASE(a_sound_mesh_stays_as_it_is) {
   const Mesh mesh = make_mesh(square, {{0, 1, 2}, {0, 2, 3}});

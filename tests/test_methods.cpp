@@ -18,6 +18,8 @@
 #include "solvers/oscillator.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(methods)
+
 using namespace springstab;
 using oracles::epsilon;
 using oracles::Point;
@@ -176,8 +178,6 @@ bool same_bits(const State<Vector>& a, const State<Vector>& b) {
 SparseMatrix sparse(const Eigen::MatrixXd& a) { return a.sparseView(); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(methods)
 
 BOOST_AUTO_TEST_CASE(names_are_unique_and_find_their_method) {
   for (const MethodInfo& method : all_methods()) {

@@ -14,6 +14,8 @@
 #include "tests/command.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(obj_texture)
+
 using Eigen::Vector2d;
 using springstab::ClothMaterial;
 using springstab::InputError;
@@ -91,8 +93,6 @@ bool close(const Json& value, double expected, double tolerance = 1e-12) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(obj_texture)
 
 BOOST_AUTO_TEST_CASE(every_corner_has_the_coordinates_that_its_face_names) {
   const Mesh mesh = obj(vertices +

@@ -17,6 +17,8 @@
 #include "tests/fuzz/readers.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(readers)
+
 using springstab::InputError;
 using springstab::Mesh;
 using springstab::read_matrix;
@@ -139,7 +141,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), by);
 }
 
-BOOST_AUTO_TEST_SUITE(readers)
+}  // namespace
 
 BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_refused_by_name_and_reason) {
   const TemporaryPath missing, directory, empty;
@@ -475,5 +477,3 @@ BOOST_AUTO_TEST_CASE(meshes_of_other_programs_have_their_published_counts) {
 }
 
 BOOST_AUTO_TEST_SUITE_END()
-
-}  // namespace

@@ -11,6 +11,8 @@
 #include "tests/command.h"
 #include "tests/results.h"
 
+BOOST_FIXTURE_TEST_SUITE(reproducible, springstab::test::Command)
+
 namespace fs = std::filesystem;
 using springstab::Json;
 using springstab::test::Command;
@@ -65,8 +67,6 @@ const char* rotor =
     "1 1 900\n2 2 1000\n3 3 1100\n1 2 30\n2 1 -30\n2 3 20\n3 2 -20\n";
 
 }  // namespace
-
-BOOST_FIXTURE_TEST_SUITE(reproducible, Command)
 
 // 61 x 47 and 23 x 23 cells: neither the eight lanes nor the threads divide them.
 BOOST_AUTO_TEST_CASE(regions_do_not_depend_on_threads) {

@@ -23,6 +23,9 @@
 #include "experiments/journal.h"
 #include "solvers/io/input_error.h"
 #include "tests/results.h"
+#include "tests/scratch.h"
+
+BOOST_FIXTURE_TEST_SUITE(resume, springstab::test::ScratchFolder)
 
 namespace fs = std::filesystem;
 using namespace springstab;
@@ -35,19 +38,6 @@ namespace {
 void write(const fs::path& file, const std::string& content) {
   std::ofstream(file, std::ios::binary) << content;
 }
-
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("springstab resume " + std::to_string(getpid()))) {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 using Arguments = std::vector<std::string>;
 
@@ -195,8 +185,6 @@ std::string refusal(const fs::path& folder, Arguments arguments, bool resume = t
 }
 
 }  // namespace
-
-BOOST_FIXTURE_TEST_SUITE(resume, Folder)
 
 BOOST_AUTO_TEST_CASE(a_killed_divergence_study_ends_as_if_it_had_not_been) {
   const Undisturbed undisturbed(path() / "left alone", divergence);

@@ -15,6 +15,8 @@
 #include "solvers/scene/springs.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(scene)
+
 using namespace springstab;
 
 namespace {
@@ -170,8 +172,6 @@ struct Pendulum {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene)
 
 // Differences with a step of 1e-4 of the shortest spring: that step squared is the truncation, and rounding
 // is eps times the energy divided by the step, relative to a gradient of about the energy.

@@ -10,6 +10,8 @@
 #include "experiments/input/scene_description.h"
 #include "solvers/io/input_error.h"
 
+BOOST_AUTO_TEST_SUITE(scene_file)
+
 using namespace springstab;
 
 namespace {
@@ -79,8 +81,6 @@ void check_equal(const PerCondition& a, const PerCondition& b) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(scene_file)
 
 BOOST_AUTO_TEST_CASE(every_field_that_is_written_arrives) {
   const SceneFile file(R"({

@@ -18,6 +18,8 @@
 #include "solvers/simulation.h"
 #include "tests/allocation_counter.h"
 
+BOOST_AUTO_TEST_SUITE(simulation)
+
 using namespace springstab;
 
 namespace {
@@ -96,8 +98,6 @@ struct Record {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(simulation)
 
 // At 1.02 of the limit the slowest to grow is explicit Euler: |λ|² - 1 is about 0.02 Y, here 0.03.
 BOOST_AUTO_TEST_CASE(the_linear_limit_of_a_cloth_parts_bounded_runs_from_diverging_ones) {

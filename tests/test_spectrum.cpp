@@ -27,6 +27,8 @@
 #include "solvers/stepper.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(spectrum)
+
 using namespace springstab;
 
 namespace {
@@ -283,8 +285,6 @@ double modal_radius(std::string_view method, const Vector& squares, RayleighDamp
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(spectrum)
 
 BOOST_AUTO_TEST_CASE(arpack_finds_the_spectra_that_are_known) {
   for (const Known& known : known_spectra()) BOOST_TEST_CONTEXT(known.name) {

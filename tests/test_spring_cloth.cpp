@@ -11,6 +11,8 @@
 #include "solvers/io/input_error.h"
 #include "solvers/scene/spring_cloth.h"
 
+BOOST_AUTO_TEST_SUITE(spring_cloth)
+
 using namespace springstab;
 
 namespace {
@@ -83,8 +85,6 @@ const double nan_value = std::numeric_limits<double>::quiet_NaN();
 const std::vector<Eigen::Vector3d> unit_square{{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(spring_cloth)
 
 BOOST_AUTO_TEST_CASE(a_grid_has_the_springs_that_the_formulas_count) {
   for (const auto& [n, m] : {IndexPair{1, 1}, {1, 5}, {5, 1}, {2, 2}, {2, 3}, {3, 2}, {4, 7}, {6, 5}}) {

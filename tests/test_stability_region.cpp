@@ -17,6 +17,8 @@
 #include "oracles.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(stability_region)
+
 using namespace springstab;
 using oracles::Complex;
 using oracles::Point;
@@ -144,8 +146,6 @@ double top(const StabilityRegion& region, double x) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stability_region)
 
 BOOST_AUTO_TEST_CASE(constants_to_ten_digits) {
   const double s2 = std::numbers::sqrt2;

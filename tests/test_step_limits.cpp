@@ -15,13 +15,15 @@
 #include "analysis/step_limits.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(step_limits)
+
 using namespace springstab;
 
 namespace {
 
 const double inf = std::numeric_limits<double>::infinity();
 
-const StabilityRegion& region_of(std::string_view method) { return stability_region(method); }
+const StabilityRegion& region_of(std::string_view method) { return springstab::stability_region(method); }
 
 /// The largest ρ over a number of points; brute force's only tool.
 class LargestRadius {
@@ -114,8 +116,6 @@ double radius_of_design(std::string_view method, const DampingDesign& design, do
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(step_limits)
 
 BOOST_AUTO_TEST_CASE(closed_forms_without_damping) {
   const RayleighModes modes{.k_min = 3, .k_max = 1700};

@@ -7,6 +7,8 @@
 
 #include "experiments/stress/stress.h"
 
+BOOST_AUTO_TEST_SUITE(stress)
+
 using namespace springstab;
 
 namespace {
@@ -14,8 +16,6 @@ namespace {
 const CommonOptions quiet{.quiet = true};
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(stress)
 
 BOOST_AUTO_TEST_CASE(the_catalogue_has_cases_of_every_class_and_no_case_twice) {
   std::set<std::string> names, kinds;

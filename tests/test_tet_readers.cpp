@@ -15,6 +15,8 @@
 #include "solvers/io/vtk.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(tet_readers)
+
 using namespace springstab;
 
 namespace {
@@ -104,8 +106,6 @@ void check_refused(const Parse& parse, const std::string& sound, const std::vect
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tet_readers)
 
 BOOST_AUTO_TEST_CASE(one_mesh_is_the_same_in_every_format) {
   for (const auto& format : formats) BOOST_TEST_CONTEXT(format.name) {

@@ -21,6 +21,8 @@
 #include "solvers/stepper.h"
 #include "tests/shared_data.h"
 
+BOOST_AUTO_TEST_SUITE(tet_solid)
+
 using namespace springstab;
 
 namespace {
@@ -254,8 +256,6 @@ void expect_error(const std::function<void()>& action, const std::string& place,
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(tet_solid)
 
 // --- which springs a mesh has ---
 

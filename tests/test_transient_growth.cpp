@@ -9,6 +9,8 @@
 #include "solvers/linear/matrix_system.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(transient_growth)
+
 using namespace springstab;
 using boost::test_tools::tolerance;
 
@@ -23,8 +25,6 @@ MatrixSystem oscillator(double x, double y) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(transient_growth)
 
 // v² + Yx² + Yxv stays; with w = √Y x its eigenvalues are 1 ± √Y/2, and the powers turn along its ellipses.
 BOOST_AUTO_TEST_CASE(symplectic_euler_moves_along_the_ellipses_that_it_conserves) {

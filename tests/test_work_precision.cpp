@@ -22,6 +22,8 @@
 #include "solvers/spring_chain.h"
 #include "solvers/stepper.h"
 
+BOOST_AUTO_TEST_SUITE(work_precision)
+
 using namespace springstab;
 namespace fs = std::filesystem;
 
@@ -73,8 +75,6 @@ struct Folder {
 };
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(work_precision)
 
 // --- the chain ---
 

@@ -9,9 +9,8 @@
 #include "solvers/scene/condition_damping.h"
 #include "solvers/scene/triangle_cloth.h"
 
+namespace springstab::bench::energies {
 namespace {
-
-using namespace springstab;
 
 /// The cloth of the speed table in the README, and its terms bound to their matrix.
 struct Cloth {
@@ -126,3 +125,4 @@ const bool registered = [] {
 }();
 
 }  // namespace
+}  // namespace springstab::bench::energies

@@ -13,10 +13,8 @@
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/stepper.h"
 
+namespace springstab::bench::nets {
 namespace {
-
-using namespace springstab;
-using namespace springstab::bench;
 
 constexpr double h_implicit = 0.01;  // [s]
 
@@ -184,3 +182,4 @@ const bool registered = [] {
 }();
 
 }  // namespace
+}  // namespace springstab::bench::nets

@@ -7,6 +7,7 @@
 #include "analysis/amplification.h"
 #include "solvers/stepper.h"
 
+namespace springstab::bench::radii {
 namespace {
 
 void spectral_radius(benchmark::State& state, std::string_view method) {
@@ -34,3 +35,4 @@ const bool registered = [] {
 }();
 
 }  // namespace
+}  // namespace springstab::bench::radii

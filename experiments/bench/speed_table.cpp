@@ -13,10 +13,8 @@
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/triangle_cloth.h"
 
+namespace springstab::bench::table {
 namespace {
-
-using namespace springstab;
-using namespace springstab::bench;
 
 constexpr double h_implicit = 0.01;  // [s]
 
@@ -187,3 +185,4 @@ const bool registered = [] {
 }();
 
 }  // namespace
+}  // namespace springstab::bench::table

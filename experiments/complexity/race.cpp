@@ -21,8 +21,8 @@ SimulateOptions options_for(const Heat& heat, const std::string& method, double 
 void set_damping(Subject& subject, const Heat& heat, const CommonOptions& common) {
   if (heat.contestant.damping == DampingRule::drag) subject.set_alpha(0);
   if (heat.contestant.damping == DampingRule::leu) {
-    const SimulateOptions leu = options_for(heat, "linearized-explicit-euler", heat.duration);
-    StepChooser(subject, common, leu).first_plan(heat.k0);
+    const SimulateOptions leu_options = options_for(heat, "linearized-explicit-euler", heat.duration);
+    StepChooser(subject, common, leu_options).first_plan(heat.k0);
   }
 }
 

@@ -14,11 +14,12 @@
 namespace springstab {
 namespace {
 
-constexpr double length = 1, mass = 1, stiffness = 1e4, gravity = 9.81;  // SI
+constexpr double rod_length = 1, bob_mass = 1, rod_stiffness = 1e4, free_fall = 9.81;  // SI
 
 Scene pendulum(double alpha) {
-  const SpringNet net{{{0, 0, 0}, {length, 0, 0}}, {mass, mass}, {{0, 1, stiffness, 0, length}}};
-  return Scene(net, {0}, {0, -gravity, 0}, {0, alpha});
+  const SpringNet net{
+      {{0, 0, 0}, {rod_length, 0, 0}}, {bob_mass, bob_mass}, {{0, 1, rod_stiffness, 0, rod_length}}};
+  return Scene(net, {0}, {0, -free_fall, 0}, {0, alpha});
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ Switching switching_oscillator() {
 
 Pendulum swinging_pendulum() {
   const StabilityRegion& region = stability_region("linearized-explicit-euler");
-  const double k0 = stiffness / mass, safety = 1.5, linearize_every = 0.05, duration = 20;
+  const double k0 = rod_stiffness / bob_mass, safety = 1.5, linearize_every = 0.05, duration = 20;
   const double fitted = design_damping(region, safety * k0, 0).h_max;
   const long each = std::lround(std::ceil(linearize_every / fitted));
   Pendulum result;
@@ -52,7 +53,7 @@ Pendulum swinging_pendulum() {
   const auto run = [&](const char* method, double damping, auto observe) {
     Scene scene = pendulum(damping);
     State<Vector> state = scene.rest_state();
-    const EnergyWatch watch = tightened({.gravity = gravity, .mass = mass});
+    const EnergyWatch watch = tightened({.gravity = free_fall, .mass = bob_mass});
     return simulate(scene, *make_stepper(method), {result.step, steps, each}, watch, state,
                     [&](const SimulationResult& so_far, const State<Vector>& s) {
                       observe(scene, so_far, s);
@@ -65,9 +66,10 @@ Pendulum swinging_pendulum() {
       });
   if (linearized.status == StepStatus::diverged) result.exploded_at = linearized.failed_at;
   run("symplectic-euler", 0, [&](Scene& scene, const SimulationResult& so_far, const auto& s) {
-    const double energy = scene.kinetic_energy(s.v) + scene.potential_energy(s.x) + mass * gravity * length;
+    const double energy =
+        scene.kinetic_energy(s.v) + scene.potential_energy(s.x) + bob_mass * free_fall * rod_length;
     result.symplectic_largest_energy =
-        std::max(result.symplectic_largest_energy, energy / (mass * gravity * length));
+        std::max(result.symplectic_largest_energy, energy / (bob_mass * free_fall * rod_length));
     if (so_far.steps < static_cast<long>(result.samples.size()))
       result.samples[so_far.steps].symplectic = s.x.norm();
   });

@@ -18,9 +18,9 @@
 namespace springstab {
 namespace {
 
-constexpr const char* methods[] = {"explicit-euler", "rk4"};
-constexpr double above = 1.05;  // of the limit
-constexpr long steps = 20000;
+constexpr const char* map_methods[] = {"explicit-euler", "rk4"};
+constexpr double above_limit = 1.05;  // of the limit
+constexpr long map_steps = 20000;
 
 // A flat net at rest, its three kinds of springs damped in other proportions than they are stiff.
 Subject damped_net() {
@@ -52,7 +52,7 @@ bool run_diverges(const StructuralMatrices& s, const std::string& method, double
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (double& x : state.x) x = uniform(random);
   const EnergyWatch watch{.initial_energy = system.potential_energy(state.x)};
-  return simulate(system, *make_stepper(method), {h, steps}, watch, state).status != StepStatus::done;
+  return simulate(system, *make_stepper(method), {h, map_steps}, watch, state).status != StepStatus::done;
 }
 
 /// One panel of the figure.
@@ -93,10 +93,10 @@ Json draw_map(const std::string& base, const CommonOptions& common, const Figure
   const std::vector<DampedMode> modes = damped_modes(s).value();
   GeneralDamping damping(s, k0, subject.damping(), 1, true, {.seed = common.seed});
 
-  std::string settings = "data=" + gnuplot_literal(base) + text("; steps=%ld; ", steps);
+  std::string settings = "data=" + gnuplot_literal(base) + text("; steps=%ld; ", map_steps);
   std::vector<std::string> files;
   bool holds = true;
-  for (const std::string method : methods) {
+  for (const std::string method : map_methods) {
     const MethodLimits limits = damping.limits(method);
     const double limit = limits.h_max.value();
     const StabilityRegion& region = stability_region(method);
@@ -109,7 +109,7 @@ Json draw_map(const std::string& base, const CommonOptions& common, const Figure
     write_pieces(base + "_" + method + "_pieces.csv", region, window);
     for (const char* part : {"_boundary.csv", "_pieces.csv"}) files.push_back(base + "_" + method + part);
     for (const bool stable : {true, false}) {
-      const double h = stable ? limits.h_certified.value_or(0.95 * limit) : above * limit;
+      const double h = stable ? limits.h_certified.value_or(0.95 * limit) : above_limit * limit;
       const std::string file = "_" + method + (stable ? "_below" : "_above");
       const Panel panel = draw_panel(base + file, s, modes, {method, h, h / limit}, common.seed);
       holds = holds && panel.diverged == !stable && (panel.outside > 0) == !stable;
@@ -123,7 +123,7 @@ Json draw_map(const std::string& base, const CommonOptions& common, const Figure
   return {{"files", files},
           {"holds", holds},
           {"summary", text("%zu eigenpairs of a damped net, below and above the limits of %zu methods",
-                           modes.size(), std::size(methods))}};
+                           modes.size(), std::size(map_methods))}};
 }
 
 }  // namespace

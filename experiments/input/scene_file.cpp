@@ -17,7 +17,7 @@ namespace {
 // --- JSON with lines ---
 
 /// A JSON value, the line it stands on, and the name it goes by in messages.
-struct Json {
+struct JsonValue {
   enum class Kind { literal, number, string, array, object };
   Kind kind = Kind::literal;
   std::string text;   // of a string; of a number (shortened) or literal as it was written
@@ -26,7 +26,7 @@ struct Json {
   long key_line = 0;
   std::string name;  // 'gravity', or 'gravity'[1] for an entry of an array
   long line = 0;
-  std::vector<Json> items{};  // entries of an array, members of an object
+  std::vector<JsonValue> items{};  // entries of an array, members of an object
 };
 
 /// Walks over text and keeps the line of the character read last. The parser reads one character beyond a
@@ -59,30 +59,30 @@ class LineCounter {
 class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
  public:
   TreeBuilder(const std::string& source, const long& line) : source_(source), line_(line) {}
-  Json take_root() { return std::move(root_); }
+  JsonValue take_root() { return std::move(root_); }
 
-  bool null() override { return add(Json::Kind::literal, "null"); }
-  bool boolean(bool value) override { return add(Json::Kind::literal, value ? "true" : "false"); }
+  bool null() override { return add(JsonValue::Kind::literal, "null"); }
+  bool boolean(bool value) override { return add(JsonValue::Kind::literal, value ? "true" : "false"); }
   bool number_integer(number_integer_t value) override {
-    return add(Json::Kind::number, std::to_string(value), static_cast<double>(value));
+    return add(JsonValue::Kind::number, std::to_string(value), static_cast<double>(value));
   }
   bool number_unsigned(number_unsigned_t value) override {
-    return add(Json::Kind::number, std::to_string(value), static_cast<double>(value));
+    return add(JsonValue::Kind::number, std::to_string(value), static_cast<double>(value));
   }
   bool number_float(number_float_t value, const string_t& text) override {
-    return add(Json::Kind::number, shortened(text), value);
+    return add(JsonValue::Kind::number, shortened(text), value);
   }
-  bool string(string_t& text) override { return add(Json::Kind::string, text); }
+  bool string(string_t& text) override { return add(JsonValue::Kind::string, text); }
   bool binary(binary_t&) override { return false; }  // not in JSON text
 
-  bool start_object(std::size_t) override { return open(Json::Kind::object); }
+  bool start_object(std::size_t) override { return open(JsonValue::Kind::object); }
   bool key(string_t& text) override {
     key_ = text;
     key_line_ = line_;
     return true;
   }
   bool end_object() override { return close(); }
-  bool start_array(std::size_t) override { return open(Json::Kind::array); }
+  bool start_array(std::size_t) override { return open(JsonValue::Kind::array); }
   bool end_array() override { return close(); }
 
   bool parse_error(std::size_t, const std::string& last_token,
@@ -107,14 +107,15 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
   [[noreturn]] void fail(const std::string& message) const { throw InputError(source_, line_, message); }
 
-  bool add(Json::Kind kind, std::string text, double number = 0) {
-    Json value{.kind = kind, .text = std::move(text), .number = number, .name = "the scene", .line = line_};
+  bool add(JsonValue::Kind kind, std::string text, double number = 0) {
+    JsonValue value{
+        .kind = kind, .text = std::move(text), .number = number, .name = "the scene", .line = line_};
     if (open_.empty()) {
       root_ = std::move(value);
       return true;
     }
-    Json& parent = *open_.back();
-    if (parent.kind == Json::Kind::object) {
+    JsonValue& parent = *open_.back();
+    if (parent.kind == JsonValue::Kind::object) {
       value.key = key_;
       value.key_line = key_line_;
       value.name = springstab::quoted(key_);
@@ -125,11 +126,11 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
 
-  bool open(Json::Kind kind) {
+  bool open(JsonValue::Kind kind) {
     constexpr std::size_t deepest = 16;  // a scene needs three; the tree's destructor is recursive
     if (open_.size() == deepest)
       fail("values are nested too deeply, expected at most " + std::to_string(deepest));
-    add(kind, kind == Json::Kind::array ? "an array" : "an object");
+    add(kind, kind == JsonValue::Kind::array ? "an array" : "an object");
     open_.push_back(open_.empty() ? &root_ : &open_.back()->items.back());
     return true;
   }
@@ -141,13 +142,13 @@ class TreeBuilder final : public nlohmann::json_sax<nlohmann::json> {
 
   const std::string& source_;
   const long& line_;
-  Json root_;
-  std::vector<Json*> open_;  // from the root to the innermost; these do not move while they are open
-  std::string key_;          // of the member to come
+  JsonValue root_;
+  std::vector<JsonValue*> open_;  // from the root to the innermost; these do not move while they are open
+  std::string key_;               // of the member to come
   long key_line_ = 0;
 };
 
-Json parse_json(const std::string& source, std::string_view text) {
+JsonValue parse_json(const std::string& source, std::string_view text) {
   constexpr std::size_t most = std::size_t{1} << 24;  // two bytes can become a value of 150
   if (text.size() > most)
     throw InputError(source, 0,
@@ -166,23 +167,23 @@ class SceneReader {
  public:
   explicit SceneReader(const std::string& source) : source_(source) {}
 
-  SceneDescription scene(const Json& json) const {
+  SceneDescription scene(const JsonValue& json) const {
     expect_members(json, {"geometry", "material", "pins", "gravity", "damping", "initial"});
     SceneDescription scene;
-    const Json* geometry_json = find(json, "geometry");
+    const JsonValue* geometry_json = find(json, "geometry");
     if (!geometry_json)
       fail(json.line,
            "'geometry' is missing, expected {\"grid\": [rows, columns]} or {\"mesh\": \"cloth.obj\"}");
     scene.geometry = geometry(*geometry_json);
-    const Json* material_json = find(json, "material");
+    const JsonValue* material_json = find(json, "material");
     const bool solid = is_solid(scene.geometry);
     scene.material = material_json ? material(*material_json, solid)
                                    : named_material("default", solid, source_, json.line);
     scene.pins.source = source_;
-    if (const Json* value = find(json, "pins")) scene.pins = pins(*value);
-    if (const Json* value = find(json, "gravity")) scene.gravity = vector(*value);
-    if (const Json* value = find(json, "damping")) scene.damping = damping(*value);
-    if (const Json* value = find(json, "initial")) scene.initial = initial(*value);
+    if (const JsonValue* value = find(json, "pins")) scene.pins = pins(*value);
+    if (const JsonValue* value = find(json, "gravity")) scene.gravity = vector(*value);
+    if (const JsonValue* value = find(json, "damping")) scene.damping = damping(*value);
+    if (const JsonValue* value = find(json, "initial")) scene.initial = initial(*value);
     return scene;
   }
 
@@ -193,19 +194,20 @@ class SceneReader {
     throw InputError(source_, line, message);
   }
 
-  [[noreturn]] void wrong(const Json& json, const std::string& expected) const {
-    const std::string shown = json.kind == Json::Kind::string ? springstab::quoted(json.text) : json.text;
+  [[noreturn]] void wrong(const JsonValue& json, const std::string& expected) const {
+    const std::string shown =
+        json.kind == JsonValue::Kind::string ? springstab::quoted(json.text) : json.text;
     fail(json.line, json.name + " is " + shown + ", expected " + expected);
   }
 
   /// Nothing but these keys, none of them twice.
-  void expect_members(const Json& object, const std::vector<std::string_view>& known) const {
-    if (object.kind != Json::Kind::object) wrong(object, "an object");
+  void expect_members(const JsonValue& object, const std::vector<std::string_view>& known) const {
+    if (object.kind != JsonValue::Kind::object) wrong(object, "an object");
     for (auto member = object.items.begin(); member != object.items.end(); ++member) {
       if (std::find(known.begin(), known.end(), member->key) == known.end())
         fail(member->key_line, "unknown key " + member->name + " in " + object.name + ", " +
                                    expected_one_of(member->key, known));
-      const auto same = [&](const Json& other) { return other.key == member->key; };
+      const auto same = [&](const JsonValue& other) { return other.key == member->key; };
       const auto first = std::find_if(object.items.begin(), member, same);
       if (first != member)
         fail(member->key_line, "duplicate key " + member->name + ", expected it once (it stands on line " +
@@ -213,15 +215,16 @@ class SceneReader {
     }
   }
 
-  static const Json* find(const Json& object, std::string_view key) {
+  static const JsonValue* find(const JsonValue& object, std::string_view key) {
     const auto member = std::find_if(object.items.begin(), object.items.end(),
-                                     [&](const Json& item) { return item.key == key; });
+                                     [&](const JsonValue& item) { return item.key == key; });
     return member == object.items.end() ? nullptr : &*member;
   }
 
-  double number(const Json& json, Sign sign) const {
-    const bool good = json.kind == Json::Kind::number && (sign == Sign::any || json.number > 0 ||
-                                                          (sign == Sign::not_negative && json.number == 0));
+  double number(const JsonValue& json, Sign sign) const {
+    const bool good =
+        json.kind == JsonValue::Kind::number &&
+        (sign == Sign::any || json.number > 0 || (sign == Sign::not_negative && json.number == 0));
     if (!good)
       wrong(json, sign == Sign::any            ? "a number"
                   : sign == Sign::not_negative ? "zero or a positive number"
@@ -229,15 +232,15 @@ class SceneReader {
     return json.number;
   }
 
-  int integer(const Json& json, int least, int most) const {
-    if (json.kind != Json::Kind::number || json.number < least || json.number > most ||
+  int integer(const JsonValue& json, int least, int most) const {
+    if (json.kind != JsonValue::Kind::number || json.number < least || json.number > most ||
         json.number != std::trunc(json.number))
       wrong(json, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return static_cast<int>(json.number);
   }
 
-  Eigen::Vector3d vector(const Json& json, Sign sign = Sign::any) const {
-    if (json.kind != Json::Kind::array) wrong(json, "an array of three numbers");
+  Eigen::Vector3d vector(const JsonValue& json, Sign sign = Sign::any) const {
+    if (json.kind != JsonValue::Kind::array) wrong(json, "an array of three numbers");
     if (json.items.size() != 3)
       fail(json.line,
            json.name + " has " + std::to_string(json.items.size()) + " entries, expected three numbers");
@@ -245,30 +248,31 @@ class SceneReader {
   }
 
   template <class T>
-  void read_number(const Json& object, std::string_view key, Sign sign, T& value) const {
-    if (const Json* member = find(object, key)) value = number(*member, sign);
+  void read_number(const JsonValue& object, std::string_view key, Sign sign, T& value) const {
+    if (const JsonValue* member = find(object, key)) value = number(*member, sign);
   }
 
-  void read_per_kind(const Json& object, PerKind& values) const {
+  void read_per_kind(const JsonValue& object, PerKind& values) const {
     read_number(object, "structural", Sign::not_negative, values.structural);
     read_number(object, "shear", Sign::not_negative, values.shear);
     read_number(object, "bending", Sign::not_negative, values.bending);
   }
 
-  Geometry geometry(const Json& json) const {
+  Geometry geometry(const JsonValue& json) const {
     expect_members(json, {"grid", "spacing", "mesh"});
-    const Json *grid_json = find(json, "grid"), *mesh = find(json, "mesh"), *spacing = find(json, "spacing");
+    const JsonValue *grid_json = find(json, "grid"), *mesh = find(json, "mesh"),
+                    *spacing = find(json, "spacing");
     if (!grid_json == !mesh)
       fail(json.line, "'geometry' has " + std::string(mesh ? "both" : "neither") +
                           " 'grid' and 'mesh', expected one of them");
     if (grid_json) return grid(json, *grid_json);
     if (spacing) fail(spacing->key_line, "'spacing' stands beside 'mesh', expected it with 'grid' only");
-    if (mesh->kind != Json::Kind::string || mesh->text.empty()) wrong(*mesh, "the path of a mesh file");
+    if (mesh->kind != JsonValue::Kind::string || mesh->text.empty()) wrong(*mesh, "the path of a mesh file");
     return (std::filesystem::path(source_).parent_path() / mesh->text).string();
   }
 
-  Grid grid(const Json& geometry, const Json& json) const {
-    if (json.kind != Json::Kind::array) wrong(json, "an array [rows, columns]");
+  Grid grid(const JsonValue& geometry, const JsonValue& json) const {
+    if (json.kind != JsonValue::Kind::array) wrong(json, "an array [rows, columns]");
     if (json.items.size() != 2)
       fail(json.line,
            "'grid' has " + std::to_string(json.items.size()) + " entries, expected [rows, columns]");
@@ -280,16 +284,16 @@ class SceneReader {
     return grid;
   }
 
-  std::string text(const Json& json, const std::string& expected) const {
-    if (json.kind != Json::Kind::string) wrong(json, expected);
+  std::string text(const JsonValue& json, const std::string& expected) const {
+    if (json.kind != JsonValue::Kind::string) wrong(json, expected);
     return json.text;
   }
 
-  Material material(const Json& json, bool solid) const {
-    if (json.kind == Json::Kind::string) return named_material(json.text, solid, source_, json.line);
-    if (json.kind != Json::Kind::object) wrong(json, "the name of a material or an object");
+  Material material(const JsonValue& json, bool solid) const {
+    if (json.kind == JsonValue::Kind::string) return named_material(json.text, solid, source_, json.line);
+    if (json.kind != JsonValue::Kind::object) wrong(json, "the name of a material or an object");
     Material start = named_material("default", solid, source_, json.line);
-    if (const Json* model = find(json, "model")) {
+    if (const JsonValue* model = find(json, "model")) {
       const std::vector<std::string_view> known =
           solid ? std::vector<std::string_view>{"tetrahedra"}
                 : std::vector<std::string_view>{"springs", "baraff-witkin"};
@@ -299,7 +303,7 @@ class SceneReader {
         wrong(*model, expected_one_of(name, known).substr(std::string("expected ").size()));
       if (name == "baraff-witkin") start = ClothMaterial{};
     }
-    if (const Json* name = find(json, "name")) {
+    if (const JsonValue* name = find(json, "name")) {
       const std::size_t model = start.index();
       start = named_material(text(*name, "the name of a material"), solid, source_, name->line);
       if (find(json, "model") && start.index() != model) wrong(*name, "the name of a material of that model");
@@ -308,18 +312,18 @@ class SceneReader {
   }
 
   template <class M>
-  void read_weight(const Json& json, M& material) const {
+  void read_weight(const JsonValue& json, M& material) const {
     read_number(json, "area_density", Sign::positive, material.area_density);
-    if (const Json* mass = find(json, "particle_mass"))
+    if (const JsonValue* mass = find(json, "particle_mass"))
       material.particle_mass = number(*mass, Sign::positive);
   }
 
-  SpringMaterial read_material(const Json& json, SpringMaterial material) const {
+  SpringMaterial read_material(const JsonValue& json, SpringMaterial material) const {
     expect_members(json, {"model", "name", "area_density", "particle_mass", "structural", "shear", "bending",
                           "damping"});
     read_weight(json, material);
     read_per_kind(json, material.stiffness);
-    if (const Json* damping = find(json, "damping")) {
+    if (const JsonValue* damping = find(json, "damping")) {
       expect_members(*damping, {"structural", "shear", "bending"});
       read_per_kind(*damping, material.damping);
       check(material, source_, damping->line);
@@ -328,10 +332,10 @@ class SceneReader {
   }
 
   /// A number for both directions of the cloth, or [along u, along v].
-  void read_directions(const Json& object, std::string_view key, Sign sign, double& u, double& v) const {
-    const Json* member = find(object, key);
+  void read_directions(const JsonValue& object, std::string_view key, Sign sign, double& u, double& v) const {
+    const JsonValue* member = find(object, key);
     if (!member) return;
-    if (member->kind != Json::Kind::array) {
+    if (member->kind != JsonValue::Kind::array) {
       u = v = number(*member, sign);
       return;
     }
@@ -342,25 +346,26 @@ class SceneReader {
     v = number(member->items[1], sign);
   }
 
-  void read_per_condition(const Json& object, PerCondition& values) const {
+  void read_per_condition(const JsonValue& object, PerCondition& values) const {
     read_directions(object, "stretch", Sign::not_negative, values.stretch_u, values.stretch_v);
     read_number(object, "shear", Sign::not_negative, values.shear);
     read_number(object, "bending", Sign::not_negative, values.bending);
   }
 
-  ClothMaterial read_material(const Json& json, ClothMaterial material) const {
+  ClothMaterial read_material(const JsonValue& json, ClothMaterial material) const {
     expect_members(json, {"model", "name", "area_density", "particle_mass", "stretch", "shear", "bending",
                           "damping", "area_scaling", "rest_stretch", "texture_unit"});
     read_weight(json, material);
     read_per_condition(json, material.stiffness);
-    if (const Json* scaling = find(json, "area_scaling")) {
+    if (const JsonValue* scaling = find(json, "area_scaling")) {
       const std::string name = text(*scaling, "'continuum' or 'original'");
       if (name != "continuum" && name != "original") wrong(*scaling, "'continuum' or 'original'");
       material.scaling = name == "original" ? AreaScaling::original : AreaScaling::continuum;
     }
     read_directions(json, "rest_stretch", Sign::positive, material.rest_stretch.u, material.rest_stretch.v);
-    if (const Json* unit = find(json, "texture_unit")) material.texture_unit = number(*unit, Sign::positive);
-    if (const Json* damping = find(json, "damping")) {
+    if (const JsonValue* unit = find(json, "texture_unit"))
+      material.texture_unit = number(*unit, Sign::positive);
+    if (const JsonValue* damping = find(json, "damping")) {
       expect_members(*damping, {"stretch", "shear", "bending"});
       read_per_condition(*damping, material.damping);
       check(material, source_, damping->line);
@@ -368,18 +373,18 @@ class SceneReader {
     return material;
   }
 
-  void read_per_kind(const Json& object, PerSolidKind& values) const {
+  void read_per_kind(const JsonValue& object, PerSolidKind& values) const {
     read_number(object, "edge", Sign::not_negative, values.edge);
     read_number(object, "altitude", Sign::not_negative, values.altitude);
   }
 
-  SolidMaterial read_material(const Json& json, SolidMaterial material) const {
+  SolidMaterial read_material(const JsonValue& json, SolidMaterial material) const {
     expect_members(json, {"model", "name", "density", "particle_mass", "edge", "altitude", "damping"});
     read_number(json, "density", Sign::positive, material.density);
-    if (const Json* mass = find(json, "particle_mass"))
+    if (const JsonValue* mass = find(json, "particle_mass"))
       material.particle_mass = number(*mass, Sign::positive);
     read_per_kind(json, material.stiffness);
-    if (const Json* damping = find(json, "damping")) {
+    if (const JsonValue* damping = find(json, "damping")) {
       expect_members(*damping, {"edge", "altitude"});
       read_per_kind(*damping, material.damping);
       check(material, source_, damping->line);
@@ -387,11 +392,12 @@ class SceneReader {
     return material;
   }
 
-  Pins pins(const Json& json) const {
-    if (json.kind == Json::Kind::string) return parse_pins(json.text, source_, json.line);
-    if (json.kind != Json::Kind::array) wrong(json, "a string such as 'first-row' or an array of indices");
+  Pins pins(const JsonValue& json) const {
+    if (json.kind == JsonValue::Kind::string) return parse_pins(json.text, source_, json.line);
+    if (json.kind != JsonValue::Kind::array)
+      wrong(json, "a string such as 'first-row' or an array of indices");
     Pins pins{Pins::Kind::indices, {}, source_, json.line};
-    for (const Json& item : json.items) {
+    for (const JsonValue& item : json.items) {
       const int index = integer(item, 0, max_particles - 1);
       pins.ranges.push_back({index, index});
     }
@@ -399,26 +405,26 @@ class SceneReader {
     return pins;
   }
 
-  RayleighDescription damping(const Json& json) const {
+  RayleighDescription damping(const JsonValue& json) const {
     expect_members(json, {"d0", "alpha"});
     RayleighDescription damping;
     read_number(json, "d0", Sign::not_negative, damping.d0);
-    const Json* alpha = find(json, "alpha");
+    const JsonValue* alpha = find(json, "alpha");
     if (!alpha) return damping;
-    if (alpha->kind == Json::Kind::string && alpha->text == "designed") {
+    if (alpha->kind == JsonValue::Kind::string && alpha->text == "designed") {
       damping.alpha.reset();
     } else {
-      if (alpha->kind == Json::Kind::string) wrong(*alpha, "zero, a positive number or 'designed'");
+      if (alpha->kind == JsonValue::Kind::string) wrong(*alpha, "zero, a positive number or 'designed'");
       damping.alpha = number(*alpha, Sign::not_negative);
     }
     return damping;
   }
 
-  InitialDescription initial(const Json& json) const {
+  InitialDescription initial(const JsonValue& json) const {
     expect_members(json, {"stretch", "velocity"});
     InitialDescription initial;
-    if (const Json* stretch = find(json, "stretch")) initial.stretch = vector(*stretch, Sign::positive);
-    if (const Json* velocity = find(json, "velocity")) initial.velocity = vector(*velocity);
+    if (const JsonValue* stretch = find(json, "stretch")) initial.stretch = vector(*stretch, Sign::positive);
+    if (const JsonValue* velocity = find(json, "velocity")) initial.velocity = vector(*velocity);
     return initial;
   }
 

@@ -11,8 +11,8 @@
 namespace springstab {
 namespace {
 
-constexpr long clock_interval = 16;  // steps between looks at the clock
-constexpr int most_settings = 30;    // a factor 2^30
+constexpr long clock_interval_steps = 16;  // steps between looks at the clock
+constexpr int most_settings = 30;          // a factor 2^30
 constexpr double reference_margin = 100;
 constexpr double rounding_level = 1e-6;  // above it growing errors are not rounding
 
@@ -38,7 +38,8 @@ Attempt attempt_method(Problem& problem, std::string_view method, double h, doub
       measured_run(problem.system(), method, {h, steps, contest_steps_per_linearization}, problem.watch(),
                    problem.start(), [&](const SimulationResult& so_far, const State<Vector>& state) {
                      if (so_far.steps % between == 0) attempt.trajectory.push_back(state);
-                     if (so_far.steps % clock_interval == 0) in_time = cpu_seconds() - before <= time_limit;
+                     if (so_far.steps % clock_interval_steps == 0)
+                       in_time = cpu_seconds() - before <= time_limit;
                      return in_time;
                    });
   attempt.outcome = in_time ? outcome_of(run.result.status) : Outcome::timed_out;
@@ -82,7 +83,7 @@ Json json_of(const ContestRun& run) {
           {"seconds", run.seconds}};
 }
 
-ContestRun run_of(const Json& json) {
+ContestRun contest_run_of(const Json& json) {
   ContestRun run{.setting = json.at("setting"),
                  .outcome = static_cast<Outcome>(json.at("outcome").get<int>()),
                  .compared = json.at("compared"),
@@ -103,8 +104,8 @@ class Climb {
   std::vector<ContestRun> operator()(const Contestant& contestant) {
     std::vector<ContestRun> runs;
     for (double setting : contestant.settings) {
-      runs.push_back(run_of(journal_.piece(contestant.name + text(" at %.17g", setting),
-                                           [&] { return json_of(run(contestant, setting)); })));
+      runs.push_back(contest_run_of(journal_.piece(contestant.name + text(" at %.17g", setting),
+                                                   [&] { return json_of(run(contestant, setting)); })));
       const ContestRun& last = runs.back();
       if (last.outcome == Outcome::timed_out || rounding_shows(runs)) break;
       if (last.outcome == Outcome::finished && !last.compared) break;

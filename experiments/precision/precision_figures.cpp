@@ -11,7 +11,7 @@ namespace springstab {
 namespace {
 
 /// A problem of a figure, and how long a run of it may take [CPU s].
-struct Row {
+struct ContestRow {
   Problem (*problem)(const CommonOptions&);
   double time_limit;
   bool designed = false;
@@ -20,11 +20,11 @@ struct Row {
 constexpr double stiffer = 900;  // √k0 is 30 times as large
 
 template <Problem (*scene)(double, const CommonOptions&)>
-constexpr Row soft(double time_limit, bool designed = false) {
+constexpr ContestRow soft(double time_limit, bool designed = false) {
   return {[](const CommonOptions& common) { return scene(1, common); }, time_limit, designed};
 }
 template <Problem (*scene)(double, const CommonOptions&)>
-constexpr Row stiff(double time_limit) {
+constexpr ContestRow stiff(double time_limit) {
   return {[](const CommonOptions& common) { return scene(stiffer, common); }, time_limit};
 }
 
@@ -38,11 +38,11 @@ bool holds(const std::vector<ContestResult>& results) {
   });
 }
 
-Json draw_rows(const std::vector<Row>& rows, const std::string& base, const CommonOptions& common,
+Json draw_rows(const std::vector<ContestRow>& rows, const std::string& base, const CommonOptions& common,
                const FiguresOptions& options) {
   std::vector<ContestResult> results;
   double worst = 0;
-  for (const Row& row : rows) {
+  for (const ContestRow& row : rows) {
     Problem problem = row.problem(common);
     if (row.designed) problem.design_damping();
     const double limit = options.quick ? row.time_limit / 20 : row.time_limit;
@@ -89,7 +89,7 @@ Json draw_long_runs(const std::string& base, const CommonOptions& common, const 
           {"summary", text("%td of %zu methods diverge undamped", diverged, energy.curves.size())}};
 }
 
-Figure contests(const std::string& name, std::vector<Row> rows) {
+Figure contests(const std::string& name, std::vector<ContestRow> rows) {
   return {.file = "work_precision_" + name,
           .name = "precision-" + name,
           .draw = [rows = std::move(rows)](const std::string& base, const CommonOptions& common,

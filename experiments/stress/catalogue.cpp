@@ -219,7 +219,7 @@ void add_matrices(std::vector<StressCase>& all) {
 constexpr char quad[] = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n";
 constexpr char two_triangles[] = "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
 constexpr char springs[] = R"("material": {"structural": 10, "shear": 5, "bending": 1}, )";
-constexpr char cloth[] =
+constexpr char cloth_material[] =
     R"("material": {"model": "baraff-witkin", "stretch": 10, "shear": 1, "bending": 1e-3}, )";
 constexpr char drag[] = R"("damping": {"d0": 1, "alpha": 1e-3})";
 
@@ -241,7 +241,8 @@ void add_scenes(std::vector<StressCase>& all) {
   grid("undamped", undamped, 0.1, "[4, 4]",
        pinned + R"("material": {"structural": 10, "shear": 5, "bending": 1})");
   grid("let go flat", damped, 0.2, "[4, 4]", s + pinned + d);
-  grid("at rest without gravity", undamped, 0.2, "[4, 4]", cloth + pinned + R"("gravity": [0, 0, 0])", false);
+  grid("at rest without gravity", undamped, 0.2, "[4, 4]",
+       cloth_material + pinned + R"("gravity": [0, 0, 0])", false);
   grid("slack: all springs at half length", damped, 0.01, "[4, 4]",
        s + pinned + d + R"(, "initial": {"stretch": [0.5, 1, 0.5]})");
   grid("compressed to a hundredth", damped, 1e-3, "[4, 4]",
@@ -291,7 +292,7 @@ void add_scenes(std::vector<StressCase>& all) {
                        const std::string& material, double duration = 0.05) {
     all.push_back({"mesh", name, expected, mesh(obj, material + R"("pins": "0", )" + d), duration});
   };
-  const std::string c = cloth;
+  const std::string c = cloth_material;
   add("triangles", damped, two_triangles, c);
   add("a quad of springs", damped, quad, s);
   add("two pieces", damped, std::string(quad) + "v 5 0 0\nv 6 0 0\nv 6 0 1\nf 5 6 7\n", s);

@@ -7,12 +7,10 @@
 namespace springstab {
 namespace {
 
-char uppercase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
 /// Walks through a format and lists its fields. What is wrong is said in problem().
-class Walk {
+class FormatWalk {
  public:
-  Walk(std::string_view format, std::string_view kinds) : format_(format), kinds_(kinds) {}
+  FormatWalk(std::string_view format, std::string_view kinds) : format_(format), kinds_(kinds) {}
 
   /// From `begin`, within the outer parentheses, to the format's end; a scale factor stays in force.
   std::vector<FortranField> fields(std::size_t begin) {
@@ -139,11 +137,12 @@ FortranFormat FortranFormat::take(std::string_view& line, std::string_view kinds
     if (end == line.size()) break;
     const char c = line[end++];
     depth += c == '(' ? 1 : c == ')' ? -1 : 0;
-    if (c != ' ') format.text_ += uppercase(c);
+    if (c != ' ') format.text_ += c;
   } while (depth > 0);
+  format.text_ = uppercase(format.text_);
   line.remove_prefix(end);
 
-  Walk walk(format.text_, kinds);
+  FormatWalk walk(format.text_, kinds);
   if (!format.text_.empty()) {
     format.first_ = walk.fields(1);
     format.first_lines_ = walk.lines();

@@ -11,19 +11,14 @@ namespace {
 using Words = std::vector<std::string_view>;
 
 /// Element types: points and lines, of any order; and curved surfaces, which have nodes within their edges.
-constexpr auto skipped_types = std::to_array<long long>({1, 8, 15, 26, 27, 28});
-constexpr auto curved_surfaces = std::to_array<long long>({9, 10, 16, 20, 21, 22, 23, 24, 25});
-constexpr auto curved_tetrahedra = std::to_array<long long>({11, 29, 30, 31});
-constexpr long long triangle = 2, quadrangle = 3, tetrahedron = 4;
+constexpr auto gmsh_skipped = std::to_array<long long>({1, 8, 15, 26, 27, 28});
+constexpr auto gmsh_curved_surfaces = std::to_array<long long>({9, 10, 16, 20, 21, 22, 23, 24, 25});
+constexpr auto gmsh_curved_tetrahedra = std::to_array<long long>({11, 29, 30, 31});
+constexpr long long gmsh_triangle = 2, gmsh_quadrangle = 3, gmsh_tetrahedron = 4;
 
-template <class Types>
-bool is_among(const Types& types, long long type) {
-  return std::ranges::find(types, type) != types.end();
-}
-
-class Reader {
+class GmshReader {
  public:
-  Reader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
+  GmshReader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
 
   AnyMesh read() {
     while (next_words()) {
@@ -183,24 +178,24 @@ class Reader {
 
   void element(const Location& at, long long type, long long before) {
     at.integer(words_[0]);
-    if (is_among(skipped_types, type)) return;
+    if (is_among(gmsh_skipped, type)) return;
     const std::string kind = "an element of type " + std::to_string(type);
     const std::string order = ", which has nodes between its corners, expected first order (gmsh -order 1)";
-    if (is_among(curved_surfaces, type)) return builder_.add_unusable_face(at, kind + order);
-    if (is_among(curved_tetrahedra, type)) at.fail(kind + order);
-    if (type != triangle && type != quadrangle && type != tetrahedron)
+    if (is_among(gmsh_curved_surfaces, type)) return builder_.add_unusable_face(at, kind + order);
+    if (is_among(gmsh_curved_tetrahedra, type)) at.fail(kind + order);
+    if (type != gmsh_triangle && type != gmsh_quadrangle && type != gmsh_tetrahedron)
       at.fail(kind + ", expected triangles, quadrangles or tetrahedra (types 2, 3 and 4)");
-    const long long corners = type == triangle ? 3 : 4;
+    const long long corners = type == gmsh_triangle ? 3 : 4;
     if (static_cast<long long>(words_.size()) - before != corners)
-      at.fail((type == triangle     ? "a triangle of "
-               : type == quadrangle ? "a quadrangle of "
-                                    : "a tetrahedron of ") +
+      at.fail((type == gmsh_triangle     ? "a triangle of "
+               : type == gmsh_quadrangle ? "a quadrangle of "
+                                         : "a tetrahedron of ") +
               std::to_string(words_.size()) + " words, expected " + std::to_string(before) + " and " +
               std::to_string(corners) + " nodes");
     std::array<long long, 4> nodes{};
     for (long long c = 0; c < corners; ++c)
       nodes[c] = at.integer(words_[static_cast<std::size_t>(before + c)]);
-    if (type == tetrahedron) return builder_.add_tet(nodes, at);
+    if (type == gmsh_tetrahedron) return builder_.add_tet(nodes, at);
     builder_.add_face({nodes.data(), static_cast<std::size_t>(corners)}, at);
   }
 
@@ -212,6 +207,8 @@ class Reader {
 
 }  // namespace
 
-AnyMesh parse_gmsh(const std::string& source, std::string_view text) { return Reader(source, text).read(); }
+AnyMesh parse_gmsh(const std::string& source, std::string_view text) {
+  return GmshReader(source, text).read();
+}
 
 }  // namespace springstab

@@ -15,8 +15,6 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-char uppercase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
 /// Calls use(k, field, text) for `count` fields, trimmed; a blank one, which Fortran would read as 0, is an
 /// error.
 template <class Use>
@@ -55,8 +53,7 @@ void read_fields(LineReader& lines, const FortranFormat& format, long long count
 
 /// The symmetry that a type such as RSA names; throws for what is not a real, square, assembled matrix.
 Symmetry parse_type(std::string_view word, const Location& at) {
-  std::string type(word);
-  std::ranges::transform(type, type.begin(), uppercase);
+  const std::string type = uppercase(word);
   const auto is = [&type](std::size_t i, std::string_view letters) {
     return letters.find(type[i]) != letters.npos;
   };
@@ -147,8 +144,9 @@ bool looks_like_harwell_boeing(std::string_view text) {
     if (!lines.next()) return false;
   Words words;
   append_words(lines.line(), words);
-  const auto letter = [](char c) { return uppercase(c) >= 'A' && uppercase(c) <= 'Z'; };
-  if (words.empty() || words[0].size() != 3 || !std::ranges::all_of(words[0], letter)) return false;
+  const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+  if (words.empty() || words[0].size() != 3 || !std::ranges::all_of(uppercase(words[0]), letter))
+    return false;
   return lines.next() && trimmed(lines.line()).starts_with('(');
 }
 

@@ -16,13 +16,6 @@ using Words = std::vector<std::string_view>;
 
 constexpr std::string_view banner = "%%matrixmarket";
 
-std::string lowercase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 /// What the banner line says: "%%MatrixMarket matrix FORMAT FIELD SYMMETRY".
 struct Kind {
   bool coordinate = true;
@@ -48,7 +41,7 @@ Kind parse_banner(std::string_view line, const Location& at) {
   if (words[3] == "pattern") at.fail("a pattern without values, expected a real or integer matrix");
   constexpr auto fields =
       std::to_array<std::string_view>({"real", "double", "float", "integer", "unsigned-integer"});
-  if (std::ranges::find(fields, words[3]) == fields.end())
+  if (!is_among(fields, words[3]))
     at.fail("unknown field " + quoted(words[3]) + ", expected real or integer");
   if (words[4] == "hermitian")
     at.fail("a hermitian, hence complex matrix, expected general, symmetric or skew-symmetric");

@@ -11,19 +11,10 @@
 #include "solvers/io/vtk.h"
 
 namespace springstab {
-namespace {
-
-std::string lowercase_suffix(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  for (char& c : suffix)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return suffix;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 AnyMesh read_mesh(const std::string& path) {
-  const std::string suffix = lowercase_suffix(path);
+  const std::string suffix = lowercase(std::filesystem::path(path).extension().string());
   if (suffix != "" && suffix != ".obj" && suffix != ".msh" && suffix != ".veg" && suffix != ".vtk")
     throw InputError(
         path, 0,
@@ -37,7 +28,7 @@ AnyMesh read_mesh(const std::string& path) {
 }
 
 bool holds_tetrahedra(const std::string& path) {
-  const std::string suffix = lowercase_suffix(path);
+  const std::string suffix = lowercase(std::filesystem::path(path).extension().string());
   if (suffix != ".msh" && suffix != ".vtk") return suffix == ".veg";
   if (!std::filesystem::is_regular_file(path)) return true;  // a pipe can be read but once
   try {

@@ -18,7 +18,7 @@ namespace {
 using Words = std::vector<std::string_view>;
 
 /// What the format has and a polygon mesh does not need.
-constexpr auto skipped_keywords =
+constexpr auto obj_skipped =
     std::to_array<std::string_view>({"vn", "g", "s", "mg", "o", "bevel", "c_interp", "d_interp", "lod",
                                      "usemap", "usemtl", "mtllib", "maplib", "shadow_obj", "trace_obj"});
 
@@ -26,15 +26,10 @@ constexpr auto skipped_keywords =
 /// curves and surfaces with all that they consist of; and from other programs than the format's first,
 /// weights and colours of vertices and the creases of subdivision surfaces. `call` and `csh` are in neither
 /// list: they bring in other files.
-constexpr auto left_out_keywords = std::to_array<std::string_view>(
+constexpr auto obj_left_out = std::to_array<std::string_view>(
     {"p",     "l",    "vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2",
      "surf",  "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech",
      "stech", "bsp",  "bzp",  "cdc",    "cdp",  "res",  "vw",   "vc",   "t"});
-
-template <class Values, class Value>
-bool is_among(const Values& values, const Value& value) {
-  return std::ranges::find(values, value) != values.end();
-}
 
 /// Collects the words of the next statement: one line, or several where a line ends in a backslash.
 /// Returns where it begins; line 0 once the file has ended.
@@ -120,9 +115,9 @@ std::array<long long, 3> parse_corner(std::string_view word, const Location& at)
   return indices;
 }
 
-class Reader {
+class ObjReader {
  public:
-  explicit Reader(const std::string& source) { mesh_.source = source; }
+  explicit ObjReader(const std::string& source) { mesh_.source = source; }
 
   Mesh read(std::string_view text) {
     LineReader lines(mesh_.source, text);
@@ -155,9 +150,9 @@ class Reader {
       textures_.push_back(parse_texture(words, at, coordinates_));
     } else if (keyword == "f" || keyword == "fo") {  // "fo": what old files call it
       face(words, at);
-    } else if (is_among(left_out_keywords, keyword)) {
+    } else if (is_among(obj_left_out, keyword)) {
       left_out_[keyword].add(at);
-    } else if (!is_among(skipped_keywords, keyword)) {
+    } else if (!is_among(obj_skipped, keyword)) {
       at.fail("unknown statement " + quoted(keyword) +
               ", expected one of Wavefront OBJ's such as v, f, vt or g");
     }
@@ -250,7 +245,7 @@ Mesh parse_obj(const std::string& source, std::string_view text) {
   if (text.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw InputError(source, 0,
                      "the file has more than 2^31 - 1 bytes, expected a smaller mesh");  // indices are int
-  return Reader(source).read(text);
+  return ObjReader(source).read(text);
 }
 
 Mesh read_obj(const std::string& path) { return parse_obj(path, read_text_file(path)); }

@@ -36,13 +36,6 @@ void wait_for_writer(int pipe) {
   fcntl(pipe, F_SETFL, 0);
 }
 
-std::string lowercase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 /// Of a decimal number outside the range of double precision, whether it lies below that range: whether the
 /// power of ten of its first digit that is not 0 is negative.
 bool is_tiny(std::string_view number) {
@@ -152,6 +145,20 @@ std::string quoted(std::string_view word) {
   std::replace_if(
       shown.begin(), shown.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
   return "'" + shown + (word.size() > longest ? "...'" : "'");
+}
+
+std::string lowercase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+std::string uppercase(std::string_view text) {
+  std::string upper(text);
+  for (char& c : upper)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return upper;
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -2,6 +2,7 @@
 // strict readers of this folder share. Numbers are read with std::from_chars, whatever the locale.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -38,6 +39,16 @@ struct Location {
 
 /// `word` in quotes as a message can show it: shortened, in printable ASCII.
 std::string quoted(std::string_view word);
+
+/// The text with its ASCII letters in one case.
+std::string lowercase(std::string_view text);
+std::string uppercase(std::string_view text);
+
+/// Whether a list holds a value.
+template <class Values, class Value>
+bool is_among(const Values& values, const Value& value) {
+  return std::ranges::find(values, value) != values.end();
+}
 
 /// `text` without its leading and trailing blanks.
 std::string_view trimmed(std::string_view text);

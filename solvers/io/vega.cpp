@@ -8,9 +8,9 @@
 namespace springstab {
 namespace {
 
-class Reader {
+class VegaReader {
  public:
-  Reader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
+  VegaReader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
 
   TetMesh read() {
     bool more = next_words();
@@ -113,6 +113,8 @@ class Reader {
 
 }  // namespace
 
-TetMesh parse_vega(const std::string& source, std::string_view text) { return Reader(source, text).read(); }
+TetMesh parse_vega(const std::string& source, std::string_view text) {
+  return VegaReader(source, text).read();
+}
 
 }  // namespace springstab

@@ -9,30 +9,19 @@ namespace {
 
 /// Types of cells: nothing, points and lines, of any order; and curved surfaces, which have points within
 /// their edges.
-constexpr auto skipped_types = std::to_array<long long>({0, 1, 2, 3, 4, 21, 35, 68, 75});
-constexpr auto curved_surfaces = std::to_array<long long>({22, 23, 28, 30, 34, 36, 69, 70, 76, 77});
-constexpr long long triangle = 5, strip = 6, polygon = 7, pixel = 8, quadrangle = 9, tetrahedron = 10;
+constexpr auto vtk_skipped = std::to_array<long long>({0, 1, 2, 3, 4, 21, 35, 68, 75});
+constexpr auto vtk_curved_surfaces = std::to_array<long long>({22, 23, 28, 30, 34, 36, 69, 70, 76, 77});
+/// The types that are read.
+enum VtkCell { vtk_triangle = 5, vtk_strip, vtk_polygon, vtk_pixel, vtk_quadrangle, vtk_tetrahedron };
 
-template <class Types>
-bool is_among(const Types& types, long long type) {
-  return std::ranges::find(types, type) != types.end();
-}
-
-std::string upper_case(std::string_view word) {
-  std::string upper(word);
-  for (char& c : upper)
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  return upper;
-}
-
-class Reader {
+class VtkReader {
  public:
-  Reader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
+  VtkReader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
 
   AnyMesh read() {
     header();
     while (next_word()) {
-      const std::string keyword = upper_case(word_);
+      const std::string keyword = uppercase(word_);
       if (keyword == "POINT_DATA" || keyword == "CELL_DATA") break;  // to the end
       section(keyword);
     }
@@ -61,10 +50,10 @@ class Reader {
       types_.resize(cells_.size(), 0);
     } else if (poly_data_ && keyword == "POLYGONS") {
       cells();
-      types_.resize(cells_.size(), polygon);
+      types_.resize(cells_.size(), vtk_polygon);
     } else if (poly_data_ && keyword == "TRIANGLE_STRIPS") {
       cells();
-      types_.resize(cells_.size(), strip);
+      types_.resize(cells_.size(), vtk_strip);
     } else if (keyword == "METADATA") {
       skip_to_blank_line();
     } else if (keyword == "FIELD") {
@@ -84,11 +73,11 @@ class Reader {
     if (!next_line(first).starts_with("# vtk DataFile Version"))
       lines_.at().fail(quoted(lines_.line()) + " begins the file, expected " + first);
     next_line("a title");
-    const std::string encoding = upper_case(next_line("ASCII"));
+    const std::string encoding = uppercase(next_line("ASCII"));
     if (encoding == "BINARY") lines_.at().fail(binary_file_message("# vtk DataFile"));
     if (encoding != "ASCII") lines_.at().fail("the file is " + quoted(lines_.line()) + ", expected ASCII");
     while (word("DATASET") == "FIELD") skip_fields();
-    if (upper_case(word_) != "DATASET") at_.fail(quoted(word_) + " stands here, expected DATASET");
+    if (uppercase(word_) != "DATASET") at_.fail(quoted(word_) + " stands here, expected DATASET");
     const std::string data = word("UNSTRUCTURED_GRID");
     poly_data_ = data == "POLYDATA";
     if (!poly_data_ && data != "UNSTRUCTURED_GRID")
@@ -111,7 +100,7 @@ class Reader {
   /// The next word, in capitals.
   std::string word(const std::string& expected) {
     if (!next_word()) lines_.at().fail("the file ends, expected " + expected);
-    return upper_case(word_);
+    return uppercase(word_);
   }
 
   long long integer(const std::string& what) {
@@ -145,7 +134,7 @@ class Reader {
   void cells() {
     const long long first = count("cells"), second = count("numbers");
     if (next_word()) {
-      if (upper_case(word_) == "OFFSETS") return cells_by_offsets(first, second);
+      if (uppercase(word_) == "OFFSETS") return cells_by_offsets(first, second);
       --next_in_line_;  // it was the first cell's
     }
     long long numbers = 0;
@@ -195,10 +184,10 @@ class Reader {
 
   void check_type(long long type, const Cell& cell) const {
     const std::string kind = "a cell of type " + std::to_string(type);
-    if (!is_among(skipped_types, type) && !is_among(curved_surfaces, type) &&
-        (type < triangle || type > tetrahedron))
+    if (!is_among(vtk_skipped, type) && !is_among(vtk_curved_surfaces, type) &&
+        (type < vtk_triangle || type > vtk_tetrahedron))
       at_.fail(kind + ", expected triangles to quadrangles or tetrahedra (types 5 to 10)");
-    const int corners = type == triangle ? 3 : type >= pixel && type <= tetrahedron ? 4 : 0;
+    const int corners = type == vtk_triangle ? 3 : type >= vtk_pixel && type <= vtk_tetrahedron ? 4 : 0;
     if (corners > 0 && cell.count != corners)
       cell.at.fail(kind + " has " + std::to_string(cell.count) + " corners, expected " +
                    std::to_string(corners));
@@ -206,17 +195,17 @@ class Reader {
 
   void add(const Cell& cell, long long type) {
     const std::span<const long long> c(corners_.data() + cell.first, static_cast<std::size_t>(cell.count));
-    if (type == tetrahedron) {
+    if (type == vtk_tetrahedron) {
       builder_.add_tet({c[0], c[1], c[2], c[3]}, cell.at);
     } else if (type ==
                strip) {  // each corner makes a triangle with the two before it, every other one turned
       for (std::size_t k = 2; k < c.size(); ++k)
         builder_.add_face(std::array{c[k - 2 + k % 2], c[k - 1 - k % 2], c[k]}, cell.at);
-    } else if (type == pixel) {  // by rows
+    } else if (type == vtk_pixel) {  // by rows
       builder_.add_face(std::array{c[0], c[1], c[3], c[2]}, cell.at);
-    } else if (type == triangle || type == polygon || type == quadrangle) {
+    } else if (type == vtk_triangle || type == vtk_polygon || type == vtk_quadrangle) {
       builder_.add_face(c, cell.at);
-    } else if (is_among(curved_surfaces, type)) {
+    } else if (is_among(vtk_curved_surfaces, type)) {
       builder_.add_unusable_face(cell.at, "a cell of type " + std::to_string(type) +
                                               ", which has points between its corners, expected flat ones "
                                               "(types 5 to 9)");
@@ -265,6 +254,6 @@ class Reader {
 
 }  // namespace
 
-AnyMesh parse_vtk(const std::string& source, std::string_view text) { return Reader(source, text).read(); }
+AnyMesh parse_vtk(const std::string& source, std::string_view text) { return VtkReader(source, text).read(); }
 
 }  // namespace springstab

@@ -6,36 +6,28 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 #include <tuple>
 
 #include "solvers/io/input_error.h"
+#include "solvers/scene/quantities.h"
 
 namespace springstab {
 namespace {
 
-enum class Kind { structural, shear, bending };  // in order of precedence
+enum class SpringKind { structural, shear, bending };  // in order of precedence
 
-double of(const PerKind& values, Kind kind) {
+double of(const PerKind& values, SpringKind kind) {
   switch (kind) {
-    case Kind::structural:
+    case SpringKind::structural:
       return values.structural;
-    case Kind::shear:
+    case SpringKind::shear:
       return values.shear;
     default:
       return values.bending;
   }
 }
 
-std::string shown(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-bool positive(double value) { return value > 0 && std::isfinite(value); }
-
-void add_spring(SpringNet& net, int i, int j, Kind kind, const SpringMaterial& material) {
+void add_spring(SpringNet& net, int i, int j, SpringKind kind, const SpringMaterial& material) {
   const double length = (net.rest[j] - net.rest[i]).norm();
   net.springs.push_back({i, j, of(material.stiffness, kind), of(material.damping, kind), length});
 }
@@ -82,7 +74,7 @@ struct Side {
 
 struct Pair {
   int i, j;
-  Kind kind;
+  SpringKind kind;
   int face;  // for messages
 };
 
@@ -108,17 +100,17 @@ std::vector<Side> sides_by_edge(const Mesh& mesh) {
 /// Which particles of the mesh are joined, once each, by the first kind that joins them.
 std::vector<Pair> joined_pairs(const Mesh& mesh, const PerKind& stiffness) {
   std::vector<Pair> pairs;
-  const auto join = [&](int a, int b, Kind kind, int face) {
+  const auto join = [&](int a, int b, SpringKind kind, int face) {
     if (a != b && of(stiffness, kind) > 0) pairs.push_back({std::min(a, b), std::max(a, b), kind, face});
   };
   for (int f = 0; f < mesh.faces(); ++f) {
     const auto corners = mesh.face(f);
     const std::size_t n = corners.size();
-    for (std::size_t k = 0; n > 3 && k < n; ++k) join(corners[k], corners[(k + 2) % n], Kind::shear, f);
+    for (std::size_t k = 0; n > 3 && k < n; ++k) join(corners[k], corners[(k + 2) % n], SpringKind::shear, f);
   }
   const std::vector<Side> sides = sides_by_edge(mesh);
   for (auto first = sides.begin(), last = first; first != sides.end(); first = last) {
-    join(first->low, first->high, Kind::structural, first->face);
+    join(first->low, first->high, SpringKind::structural, first->face);
     for (; last != sides.end() && last->low == first->low && last->high == first->high; ++last) {
       if (last - first == most_faces_at_edge)
         fail_at_face(mesh, last->face,
@@ -126,8 +118,8 @@ std::vector<Pair> joined_pairs(const Mesh& mesh, const PerKind& stiffness) {
                          std::to_string(first->low + 1) + "-" + std::to_string(first->high + 1) +
                          ", expected at most that many");
       for (auto other = first; other != last; ++other) {
-        join(other->beyond_low, last->beyond_low, Kind::bending, last->face);
-        join(other->beyond_high, last->beyond_high, Kind::bending, last->face);
+        join(other->beyond_low, last->beyond_low, SpringKind::bending, last->face);
+        join(other->beyond_high, last->beyond_high, SpringKind::bending, last->face);
       }
     }
   }
@@ -141,9 +133,9 @@ std::vector<Pair> joined_pairs(const Mesh& mesh, const PerKind& stiffness) {
 
 void check_length(const Mesh& mesh, const Pair& pair, double length) {
   if (positive(length)) return;
-  const char* name = pair.kind == Kind::structural ? "edge "
-                     : pair.kind == Kind::shear    ? "diagonal "
-                                                   : "bending spring ";
+  const char* name = pair.kind == SpringKind::structural ? "edge "
+                     : pair.kind == SpringKind::shear    ? "diagonal "
+                                                         : "bending spring ";
   fail_at_face(mesh, pair.face,
                name + std::to_string(pair.i + 1) + "-" + std::to_string(pair.j + 1) + " has length " +
                    (length == 0 ? "zero, expected distinct positions"
@@ -169,9 +161,9 @@ SpringNet make_net(const Grid& grid, const SpringMaterial& material) {
   // The neighbours that come after a particle, in the order of their numbers.
   static constexpr struct {
     int rows, columns;
-    Kind kind;
-  } neighbours[] = {{0, 1, Kind::structural}, {0, 2, Kind::bending}, {1, -1, Kind::shear},
-                    {1, 0, Kind::structural}, {1, 1, Kind::shear},   {2, 0, Kind::bending}};
+    SpringKind kind;
+  } neighbours[] = {{0, 1, SpringKind::structural}, {0, 2, SpringKind::bending}, {1, -1, SpringKind::shear},
+                    {1, 0, SpringKind::structural}, {1, 1, SpringKind::shear},   {2, 0, SpringKind::bending}};
   for (int i = 0; i < grid.rows; ++i)
     for (int j = 0; j < grid.columns; ++j)
       for (const auto& to : neighbours) {
@@ -219,10 +211,10 @@ void check(const SpringMaterial& material, const std::string& source, long line)
           "a positive number of kg/m²");
   if (const auto& mass = material.particle_mass)
     require(positive(*mass), "particle mass", *mass, "a positive number of kg");
-  for (const Kind kind : {Kind::structural, Kind::shear, Kind::bending}) {
-    const std::string name = kind == Kind::structural ? "structural"
-                             : kind == Kind::shear    ? "shear"
-                                                      : "bending";
+  for (const SpringKind kind : {SpringKind::structural, SpringKind::shear, SpringKind::bending}) {
+    const std::string name = kind == SpringKind::structural ? "structural"
+                             : kind == SpringKind::shear    ? "shear"
+                                                            : "bending";
     const double k = of(material.stiffness, kind), d = of(material.damping, kind);
     require(k == 0 || positive(k), name + " stiffness", k, "zero or a positive number of N/m");
     require(d == 0 || positive(d), name + " damping", d, "zero or a positive number of N·s/m");

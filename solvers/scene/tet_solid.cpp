@@ -2,24 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "solvers/io/input_error.h"
+#include "solvers/scene/quantities.h"
 #include "solvers/scene/springs.h"
 
 namespace springstab {
 namespace {
 
 constexpr double shortest_edge = 1e-60, longest_edge = 1e60;  // [m]
-constexpr double flat = 1e-12;                                // volume over the longest edge cubed
-
-std::string shown(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-bool positive(double value) { return value > 0 && std::isfinite(value); }
+constexpr double flat_volume = 1e-12;                         // volume over the longest edge cubed
 
 /// The volume [m³], never without; fails at the tetrahedron's line.
 double checked_volume(const TetMesh& mesh, int t) {
@@ -37,7 +29,7 @@ double checked_volume(const TetMesh& mesh, int t) {
     }
   }
   const double volume = std::abs(mesh.six_volumes(t)) / 6;
-  if (!(volume > flat * longest * longest * longest))
+  if (!(volume > flat_volume * longest * longest * longest))
     fail_at_tet(
         mesh, t,
         name + " (vertices in the file's order) has no volume, expected corners that are not in a plane");

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <tuple>
 
 #include "solvers/io/input_error.h"
 #include "solvers/scene/bending.h"
 #include "solvers/scene/condition_damping.h"
+#include "solvers/scene/quantities.h"
 
 namespace springstab {
 namespace {
@@ -16,14 +16,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double shortest_side = 1e-60, longest_side = 1e60;  // [m]
-
-std::string shown(double value) {
-  std::ostringstream text;
-  text << value;
-  return text.str();
-}
-
-bool positive(double value) { return value > 0 && std::isfinite(value); }
 
 void check_triangle(const Mesh& mesh, const FaceTriangle& t) {
   const auto x = positions(mesh, t);
@@ -40,7 +32,7 @@ void check_triangle(const Mesh& mesh, const FaceTriangle& t) {
 // --- hinges ---
 
 /// The edge low < high of a triangle and its corner opposite to it.
-struct Side {
+struct TriangleSide {
   int low, high, opposite;
 };
 
@@ -56,14 +48,14 @@ double rest_angle(const std::vector<Vector3d>& rest, const std::array<int, 4>& p
 
 std::vector<Hinge> find_hinges(const std::vector<RestTriangle>& triangles, const std::vector<Vector3d>& rest,
                                bool flat, const std::string& source) {
-  std::vector<Side> sides;
+  std::vector<TriangleSide> sides;
   sides.reserve(3 * triangles.size());
   for (const auto& [p, uv] : triangles)
     for (int c = 0; c < 3; ++c) {
       const auto [low, high] = std::minmax(p[(c + 1) % 3], p[(c + 2) % 3]);
       sides.push_back({low, high, p[c]});
     }
-  std::stable_sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+  std::stable_sort(sides.begin(), sides.end(), [](const TriangleSide& s, const TriangleSide& t) {
     return std::tie(s.low, s.high) < std::tie(t.low, t.high);
   });
   std::vector<Hinge> hinges;

@@ -168,19 +168,17 @@ long long FortranFormat::lines_for(long long numbers) const {
   // Up to the field that no number is left for; a format that ends there takes no further line.
   const auto once = static_cast<long long>(first_.size()), again = static_cast<long long>(again_.size());
   const bool at_end = numbers >= once && (numbers - once) % again == 0;
-  return field(numbers).line + (at_end ? 0 : 1);
+  return at_end ? first_lines_ + (numbers - once) / again * again_lines_ : field(numbers).line + 1;
 }
 
 double fortran_number(std::string_view text, const FortranField& field, const Location& at) {
-  const auto without_blanks = [](std::string_view part) {
-    return part.substr(std::min(part.find_first_not_of(' '), part.size()));
-  };
   const std::size_t exponent = text.find_first_of("EeDdQq+-", 1);
   std::string number(text.substr(0, exponent));
   if (exponent != text.npos) {
     const bool letter = text[exponent] != '+' && text[exponent] != '-';
     number += 'e';
-    number += letter ? without_blanks(text.substr(exponent + 1)) : text.substr(exponent);
+    for (const char c : text.substr(exponent + letter))
+      if (c != ' ') number += c;
   } else if (field.scale != 0) {
     number += 'e' + std::to_string(-field.scale);
   }

@@ -29,7 +29,7 @@ class GmshReader {
       if (section == "$MeshFormat") {
         format();
       } else if (section == "$Nodes" || section == "$ParametricNodes" || section == "$NOD") {
-        nodes(section == "$ParametricNodes");
+        nodes(section != "$Nodes");
       } else if (section == "$Elements" || section == "$ELM") {
         elements(section == "$ELM");
       } else {
@@ -128,7 +128,7 @@ class GmshReader {
       return blocks("nodes", [&](long long dimension, long long parametric, long long n) {
         block_of_nodes(n, parametric != 0 ? dimension : 0);
       });
-    // the dimension and tag of the node's entity and up to two parameters
+    // with the parameters, before them, the dimension and tag of the node's entity
     counted("nodes", [&](const Location& at) { numbered_node(at, with_parameters ? 4 : 0); });
   }
 

@@ -78,11 +78,9 @@ Eigen::Vector2d parse_texture(const Words& words, const Location& at, Tally& not
   const std::size_t count = words.size() - 1;
   if (count < 1 || count > 3)
     at.fail("texture coordinates with " + std::to_string(count) + " numbers, expected u, u v or u v w");
-  if (std::ranges::any_of(words, is_not_finite)) {
-    not_finite.add(at);
-    return Eigen::Vector2d::Zero();
-  }
-  for (std::size_t i = 0; i < count; ++i) numbers[i] = at.real(words[i + 1]);
+  if (std::ranges::any_of(words, is_not_finite)) not_finite.add(at);
+  for (std::size_t i = 0; i < count; ++i)
+    if (!is_not_finite(words[i + 1])) numbers[i] = at.real(words[i + 1]);
   return {numbers[0], numbers[1]};
 }
 
@@ -107,7 +105,9 @@ std::array<long long, 3> parse_corner(std::string_view word, const Location& at)
   for (std::size_t i = 0; i < indices.size() && slash != rest.npos; ++i) {
     slash = rest.find('/');
     const std::string_view index = rest.substr(0, slash);
-    if (i == 0 || !index.empty()) indices[i] = at.integer(index);
+    if (i == 0 && index.empty())
+      at.fail("the corner " + quoted(word) + " lacks its vertex, expected i, i/t, i/t/n or i//n");
+    if (!index.empty()) indices[i] = at.integer(index);
     if (slash != rest.npos) rest.remove_prefix(slash + 1);
   }
   if (slash != rest.npos)

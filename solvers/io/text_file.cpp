@@ -100,7 +100,7 @@ std::string binary_file_message(std::string_view beginning) {
   const auto begins = [&](std::string_view magic) { return beginning.starts_with(magic); };
   return std::string("the file is binary, expected text") +
          (begins("$MeshFormat")      ? ": `gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
-          : begins("# vtk DataFile") ? ": saved as ASCII (ParaView's file type, SetFileTypeToASCII in VTK)"
+          : begins("# vtk DataFile") ? ": ParaView's file type ASCII or VTK's SetFileTypeToASCII() saves it"
           : begins("\x1f\x8b")       ? ": `gunzip` unpacks it"
                                      : " in ASCII or UTF-8");
 }

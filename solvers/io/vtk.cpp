@@ -197,8 +197,7 @@ class VtkReader {
     const std::span<const long long> c(corners_.data() + cell.first, static_cast<std::size_t>(cell.count));
     if (type == vtk_tetrahedron) {
       builder_.add_tet({c[0], c[1], c[2], c[3]}, cell.at);
-    } else if (type ==
-               strip) {  // each corner makes a triangle with the two before it, every other one turned
+    } else if (type == vtk_strip) {  // a triangle of each corner and the two before, every other one turned
       for (std::size_t k = 2; k < c.size(); ++k)
         builder_.add_face(std::array{c[k - 2 + k % 2], c[k - 1 - k % 2], c[k]}, cell.at);
     } else if (type == vtk_pixel) {  // by rows

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -60,7 +61,7 @@ Eigen::Vector3d parse_vertex(const Words& words, const Location& at, Tally& not_
   if (count != 3 && count != 4 && count != 6 && count != 7)
     at.fail("a vertex with " + std::to_string(count) +
             " numbers, expected x y z and at most a weight and a colour (r g b) after them");
-  const auto unused = std::ranges::subrange(words.begin() + 4, words.end());
+  const auto unused = std::span(words).subspan(4);
   if (std::ranges::any_of(unused, is_not_finite)) not_finite.add(at);
   for (const std::string_view word : unused)
     if (!is_not_finite(word)) at.real(word);

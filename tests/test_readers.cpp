@@ -706,6 +706,7 @@ BOOST_AUTO_TEST_CASE(every_beginning_of_every_seed_reads_or_is_refused_with_a_li
         BOOST_TEST(reads(reader, with_crlf(text)) == whole);
         if (text.find('\r') == text.npos) BOOST_TEST(reads(reader, with_line_ends(text, "\r")) == whole);
         BOOST_TEST(reads(reader, "\xEF\xBB\xBF" + text) == whole);
+        if (reader.name != "scene") BOOST_TEST(reads(reader, text + "\x1a") == whole);
         ++(whole ? read : refused);
       }
     }

@@ -38,7 +38,8 @@ const std::string gmsh_2 =
 const std::string gmsh_parametric =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n2\n3 4 2 0 1 7 2 3 4\n4 4 3 0 1 0 2 3 4 "
     "5\n$EndElements\n"
-    "$Comments\n$Nodes\nare\n$EndComments\n$ParametricNodes\n5\n7 0 0 0 0 1\n2 +1 0 0 1 2 0.5\n3 0 1 0 2 3 "
+    "// a comment\n# $End\n$Comments\n$Nodes\nare\n$EndComments\n$ParametricNodes\n5\n7 0 0 0 0 1\n2 +1 0 0 "
+    "1 2 0.5\n3 0 1 0 2 3 "
     "0.5 0.25\n"
     "4 0 0 1 3 1\n5 1 1.5 1 3 1\n$EndParametricNodes\n";
 // As Gmsh writes them: blocks by entity, parametric places on curves and surfaces, numbers with gaps.
@@ -422,6 +423,7 @@ BOOST_AUTO_TEST_CASE(binary_files_are_refused_with_what_makes_text_of_them) {
          "ParaView's file type ASCII"},
         {"a.vtk", "# vtk DataFile Version 3.0\n\nBINARY\nDATASET POLYDATA\n", "SetFileTypeToASCII()"},
         {"a.veg", "\x1f\x8b\b" + zeros, "`gunzip`"},
+        {"a.veg", "\x1f\x8b\b\1", "`gunzip`"},
         {"a.obj", "v " + zeros, "expected text in ASCII"}})
     BOOST_CHECK_EXCEPTION(
         read_mesh(folder.file(name, text).string()), InputError, [&](const InputError& error) {

@@ -23,6 +23,7 @@ class GmshReader {
   AnyMesh read() {
     while (next_words()) {
       const std::string section(words_.front());
+      if (section.starts_with("//") || section.starts_with('#')) continue;
       if (!section.starts_with('$') || section.starts_with("$End") || section.starts_with("$END"))
         lines_.at().fail(quoted(section) + " begins no section, expected one such as $Nodes or $NOD");
       const std::string end = (section == "$NOD" || section == "$ELM" ? "$END" : "$End") + section.substr(1);

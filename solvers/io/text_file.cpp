@@ -20,6 +20,7 @@ namespace springstab {
 namespace {
 
 constexpr std::string_view blanks = " \t\v\f\r";
+constexpr std::string_view gzip = "\x1f\x8b";  // what its files begin with
 
 /// std::from_chars does not know the sign '+'; here it may stand before a number, but not before another
 /// sign.
@@ -88,6 +89,7 @@ std::string read_text_file(const std::string& path) {
     }
   }
   if (std::ferror(file.get())) fail("cannot be read", errno);
+  if (text.starts_with(gzip)) throw InputError(path, 0, binary_file_message(text));
   if (text.empty()) throw InputError(path, 0, "the file is empty, expected text");
   return text;
 }
@@ -101,7 +103,7 @@ std::string binary_file_message(std::string_view beginning) {
   return std::string("the file is binary, expected text") +
          (begins("$MeshFormat")      ? ": `gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
           : begins("# vtk DataFile") ? ": ParaView's file type ASCII or VTK's SetFileTypeToASCII() saves it"
-          : begins("\x1f\x8b")       ? ": `gunzip` unpacks it"
+          : begins(gzip)             ? ": `gunzip` unpacks it"
                                      : " in ASCII or UTF-8");
 }
 
@@ -188,6 +190,7 @@ bool append_words(std::string_view line, std::vector<std::string_view>& words, c
 LineReader::LineReader(std::string_view source, std::string_view text) : rest_(text), at_{source, 0} {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
+  if (rest_.ends_with('\x1a')) rest_.remove_suffix(1);  // how DOS ends a file
 }
 
 bool LineReader::next() {

@@ -60,7 +60,8 @@ bool is_not_finite(std::string_view word);
 /// comment: within a word that sign begins none. Returns whether there was no comment.
 bool append_words(std::string_view line, std::vector<std::string_view>& words, char comment = '\n');
 
-/// Walks through a text line by line. Lines end in LF, CR LF or CR; a UTF-8 byte order mark is skipped.
+/// Walks through a text line by line. Lines end in LF, CR LF or CR; a UTF-8 byte order mark and a final
+/// Ctrl-Z are skipped.
 /// Source and text must outlive the reader.
 class LineReader {
  public:

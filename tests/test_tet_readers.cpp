@@ -424,11 +424,12 @@ BOOST_AUTO_TEST_CASE(binary_files_are_refused_with_what_makes_text_of_them) {
         {"a.vtk", "# vtk DataFile Version 3.0\n\nBINARY\nDATASET POLYDATA\n", "SetFileTypeToASCII()"},
         {"a.veg", "\x1f\x8b\b" + zeros, "`gunzip`"},
         {"a.veg", "\x1f\x8b\b\1", "`gunzip`"},
-        {"a.obj", "v " + zeros, "expected text in ASCII"}})
+        {"a.obj", "v " + zeros, "a zero byte, expected text in ASCII"}})
     BOOST_CHECK_EXCEPTION(
         read_mesh(folder.file(name, text).string()), InputError, [&](const InputError& error) {
           const std::string message = error.what();
-          return message.find("the file is binary") != message.npos && message.find(remedy) != message.npos;
+          return (message.find("the file is binary") == message.npos) == (name == "a.obj") &&
+                 message.find(remedy) != message.npos;
         });
 }
 

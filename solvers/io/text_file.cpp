@@ -100,11 +100,13 @@ void Location::fail(const std::string& message) const {
 
 std::string binary_file_message(std::string_view beginning) {
   const auto begins = [&](std::string_view magic) { return beginning.starts_with(magic); };
-  return std::string("the file is binary, expected text") +
-         (begins("$MeshFormat")      ? ": `gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
-          : begins("# vtk DataFile") ? ": ParaView's file type ASCII or VTK's SetFileTypeToASCII() saves it"
-          : begins(gzip)             ? ": `gunzip` unpacks it"
-                                     : " in ASCII or UTF-8");
+  const std::string_view remedy =
+      begins("$MeshFormat")      ? "`gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
+      : begins("# vtk DataFile") ? "ParaView's file type ASCII or VTK's SetFileTypeToASCII() saves it"
+      : begins(gzip)             ? "`gunzip` unpacks it"
+                                 : "";
+  return remedy.empty() ? "a zero byte, expected text in ASCII or UTF-8"
+                        : "the file is binary, expected text: " + std::string(remedy);
 }
 
 double Location::real_shown_as(std::string_view number, std::string_view word) const {

@@ -16,7 +16,8 @@ namespace springstab {
 /// within a second.
 std::string read_text_file(const std::string& path);
 
-/// "the file is binary, expected ...": with what makes text of it, where its beginning tells the format.
+/// "the file is binary, expected text: ..." with what makes text of it, where its beginning tells the format;
+/// else that it has a zero byte.
 std::string binary_file_message(std::string_view beginning);
 
 /// A line (from 1) of a source; what is read from it fails with an InputError that names it.

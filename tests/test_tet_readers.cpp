@@ -223,6 +223,7 @@ BOOST_AUTO_TEST_CASE(malformed_gmsh_4_files_are_refused_with_their_line) {
                 {{"4.1 0 8", "4.0 0 8", 14, "(version 4.0)"},
                  {"4.1 0 8", "4.1 1 8", 2, "binary"},
                  {"1 1 1 2\n20", "1 1 0 2\n20", 21, "a node of 4 words"},
+                 {"1 1 1 2\n20", "9223372036854775807 1 1 2\n20", 18, "an entity of dimension"},
                  {"20\n30\n", "20 30\n", 19, "a number of a node of 2 words"},
                  {"20\n30\n", "20\n10\n", 22, "vertex 10 is there a second time"},
                  {"3 10 20 30 40", "3 10 20 30 4x", 38, "'4x' is not an integer"}});

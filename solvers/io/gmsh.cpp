@@ -107,7 +107,10 @@ class GmshReader {
       const std::vector<long long> head =
           integers(4, "an entity's dimension and tag, a kind, and a number of " + things);
       const long long size = count_of(lines_.at(), words_[3], things);
-      block(head[with_tags ? 0 : 1], head[2], size);
+      const long long dimension = head[with_tags ? 0 : 1];
+      if (dimension < 0 || dimension > 3)
+        lines_.at().fail("an entity of dimension " + std::to_string(dimension) + ", expected 0 to 3");
+      block(dimension, head[2], size);
       found += size;
     }
     next_words();

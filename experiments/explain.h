@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-#include "experiments/input/subject.h"
-#include "experiments/output.h"
+#include "experiments/command/output.h"
+#include "experiments/inputs/subject.h"
 #include "solvers/simulation.h"
 
 namespace springstab {

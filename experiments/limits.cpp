@@ -5,11 +5,10 @@
 #include <map>
 #include <vector>
 
-#include "analysis/general_damping.h"
-#include "analysis/transient_growth.h"
-#include "experiments/experiments.h"
-#include "experiments/mesh_report.h"
-#include "experiments/output.h"
+#include "analysis/structure_limits.h"
+#include "experiments/command/output.h"
+#include "experiments/inputs/mesh_report.h"
+#include "experiments/limits_options.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -19,9 +18,7 @@ constexpr double told_growth = 2;
 
 struct Row {
   std::string_view method;
-  MethodLimits limits;                 // all unknown if k0 is not
-  std::optional<double> h_every_pose;  // proved for every pose [s]
-  std::optional<double> growth;        // a lower bound of the largest ‖Aⁿ‖ at the step to use
+  MethodLimits limits;  // all unknown if k0 is not
 };
 
 const char* name(LimitStatus status) {
@@ -127,7 +124,9 @@ Json limits_json(std::string_view method, const MethodLimits& limits, double d0)
             {"h_certified_source", limits.h_certified ? Json(name(limits.proof)) : Json()},
             {"reason", limits.h_certified ? Json() : Json(limits.unproved)},
             {"recommended_step", number(limits.recommended)},
-            {"designed", nullptr}};
+            {"designed", nullptr},
+            {"h_every_pose", number(limits.every_pose)},
+            {"transient_growth", number(limits.transient_growth)}};
   if (limits.designed)
     json["designed"] = {
         {"h_max", number(limits.designed->h_max > 0 ? std::optional(limits.designed->h_max) : std::nullopt)},
@@ -156,23 +155,12 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
                     text("use (F=%g)", safety).c_str(), "with fitted damping: h_max, alpha");
 }
 
-// The modes' own damping, or that fitted to the step.
-std::optional<double> growth_at_recommended(std::string_view method, const MethodLimits& limits,
-                                            const StiffestMode& k0, const DampingModel& damping) {
-  if (!limits.recommended || damping.kind == DampingModel::Kind::general) return std::nullopt;
-  const double h = *limits.recommended;
-  const double alpha = damping.kind == DampingModel::Kind::designed
-                           ? designed_alpha(stability_region(method), h, damping.d0)
-                           : damping.alpha;
-  return transient_growth(method, {k0.smallest.value_or(0), k0.value, damping.d0, alpha}, h);
-}
-
 // Stable is not decaying from the start.
 void print_growth(const std::vector<Row>& rows) {
   std::string list;
   for (const Row& row : rows)
-    if (row.growth.value_or(1) >= told_growth)
-      list += (list.empty() ? "" : ", ") + std::string(row.method) + text(" %.3g", *row.growth);
+    if (const double growth = row.limits.transient_growth.value_or(1); growth >= told_growth)
+      list += (list.empty() ? "" : ", ") + std::string(row.method) + text(" %.3g", growth);
   if (!list.empty())
     std::cout << "\nstable at the step to use, but √energy may first grow by a factor of: " << list << '\n';
 }
@@ -180,7 +168,7 @@ void print_growth(const std::vector<Row>& rows) {
 // Why nothing is proved, where the status does not say it.
 void print_reasons(const std::vector<Row>& rows) {
   std::map<std::string_view, std::string> methods;
-  for (const auto& [method, limits, every_pose, growth] : rows)
+  for (const auto& [method, limits] : rows)
     if (!limits.h_certified && limits.status != LimitStatus::none) {
       std::string& list = methods[limits.unproved];
       list += (list.empty() ? "" : ", ") + std::string(method);
@@ -195,78 +183,78 @@ void print(std::string_view method, const MethodLimits& l) {
   std::cout << (l.designed ? text("%.6g, %.4g", l.designed->h_max, l.designed->alpha) : "-") << '\n';
 }
 
+void check(const LimitsOptions& options) {
+  if (!(options.max_step > 0 && std::isfinite(options.max_step)))
+    throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
+  if (!options.method.empty()) Method{options.method};
+}
+
+Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
+  const auto& [matrices, damping, every_pose] = answer.structure();
+  Json list = Json::array();
+  for (const Row& row : rows) list.push_back(limits_json(row.method, row.limits, damping.d0));
+  return {{"degrees_of_freedom", matrices.size()},
+          {"condensed", matrices.condensed},
+          {"k0", k0_json(answer.k0())},
+          {"stiffness_indefinite", answer.k0().indefinite},
+          {"symmetric", matrices.symmetric},
+          {"growth_rate", number(answer.growth())},
+          {"damping", damping_json(damping)},
+          {"safety", safety},
+          {"mesh", mesh_json(subject)},
+          {"methods", list}};
+}
+
+void print(StructureLimits& answer, const std::vector<Row>& rows, double safety) {
+  const auto& [matrices, damping, every_pose] = answer.structure();
+  const StiffestMode& k0 = answer.k0();
+  if (!k0.converged) {
+    std::cout << text("k0 did not converge in %ld products; proved: it is ", k0.products) << bounds(k0)
+              << '\n';
+    return;
+  }
+  print(matrices, k0, damping, safety);
+  for (const Row& row : rows) print(row.method, row.limits);
+  if (!matrices.symmetric)
+    std::cout
+        << "\nK or D is not symmetric: these limits are estimates, from all eigenvalues of the motion\n";
+  if (const double rate = answer.growth().value_or(0); rate > 0)
+    std::cout << text(
+        "\nthe motion itself grows, by e in %.4g s (Re μ = %.6g 1/s), whatever the method; limits are "
+        "for the other modes\n",
+        1 / rate, rate);
+  print_growth(rows);
+  print_reasons(rows);
+  for (const auto& [method, limits] : rows)
+    if (limits.every_pose)
+      std::cout << text("\n%s is stable below %.6g s in every pose of these springs: proved\n",
+                        std::string(method).c_str(), *limits.every_pose);
+}
+
 }  // namespace
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
-  if (!(options.max_step > 0 && std::isfinite(options.max_step)))
-    throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
-  if (!options.method.empty()) find_method(options.method);
+  check(options);
   Subject subject(options.input, true);
   print_mesh_notes(subject);
-  const StructuralMatrices structure = subject.structure(subject.initial_state(common.seed));
-  const StiffestMode k0 = stiffest_mode(structure, {.seed = common.seed});
-  const DampingModel damping = subject.damping();
+  Structure structure = subject.structure(subject.initial_state(common.seed));
+  structure.every_pose = subject.every_pose();
+  StructureLimits answer(std::move(structure),
+                         {.safety = options.safety, .seed = common.seed, .max_step = options.max_step});
 
   std::vector<Row> rows;
-  const bool general = (damping.kind == DampingModel::Kind::general || !structure.symmetric) && k0.converged;
-  std::optional<GeneralDamping> general_damping;
-  if (general)
-    general_damping.emplace(structure, k0, damping, options.safety, true, ArpackOptions{.seed = common.seed});
-  const std::optional<StructuralMatrices> every_pose = subject.every_pose();
-  int status = k0.converged ? done : no_answer;
-  for (const MethodInfo& info : all_methods()) {
-    if (!options.method.empty() && info.name != options.method) continue;
-    MethodLimits limits =
-        general ? general_damping->limits(info.name) : method_limits(info.name, k0, damping, options.safety);
-    std::optional<double> h_every_pose;
-    if (const auto condition = stability_region(info.name).exact_condition(); condition && every_pose)
-      h_every_pose = proved_limit(*every_pose, *condition, {.seed = common.seed});
-    if (limits.status == LimitStatus::unlimited) limits.recommended = options.max_step;
+  int status = answer.k0().converged ? done : no_answer;
+  for (const Method& method : all_methods()) {
+    if (!options.method.empty() && method.name() != options.method) continue;
+    const MethodLimits& limits = answer.limits(method);
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
-    const auto growth = general ? std::nullopt : growth_at_recommended(info.name, limits, k0, damping);
-    rows.push_back({info.name, limits, h_every_pose, growth});
+    rows.push_back({method.name(), limits});
   }
-
-  const std::optional<double> growth_rate = general ? general_damping->growth() : std::nullopt;
-
   if (common.json) {
-    Json list = Json::array();
-    for (const Row& row : rows) {
-      list.push_back(limits_json(row.method, row.limits, damping.d0));
-      list.back()["h_every_pose"] = number(row.h_every_pose);
-      list.back()["transient_growth"] = number(row.growth);
-    }
-    print_json(Json{{"degrees_of_freedom", structure.size()},
-                    {"condensed", structure.condensed},
-                    {"k0", k0_json(k0)},
-                    {"stiffness_indefinite", k0.indefinite},
-                    {"symmetric", structure.symmetric},
-                    {"growth_rate", number(growth_rate)},
-                    {"damping", damping_json(damping)},
-                    {"safety", options.safety},
-                    {"mesh", mesh_json(subject)},
-                    {"methods", list}});
-  } else if (k0.converged) {
-    print(structure, k0, damping, options.safety);
-    for (const Row& row : rows) print(row.method, row.limits);
-    if (!structure.symmetric)
-      std::cout
-          << "\nK or D is not symmetric: these limits are estimates, from all eigenvalues of the motion\n";
-    if (growth_rate.value_or(0) > 0)
-      std::cout << text(
-          "\nthe motion itself grows, by e in %.4g s (Re μ = %.6g 1/s), whatever the method; limits are "
-          "for the other modes\n",
-          1 / *growth_rate, *growth_rate);
-    print_growth(rows);
-    print_reasons(rows);
-    for (const Row& row : rows)
-      if (row.h_every_pose)
-        std::cout << text("\n%s is stable below %.6g s in every pose of these springs: proved\n",
-                          std::string(row.method).c_str(), *row.h_every_pose);
+    print_json(report(answer, rows, options.safety, subject));
   } else {
-    std::cout << text("k0 did not converge in %ld products; proved: it is ", k0.products) << bounds(k0)
-              << '\n';
+    print(answer, rows, options.safety);
   }
   return status;
 }

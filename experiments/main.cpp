@@ -3,7 +3,8 @@
 #include <cstring>
 #include <iostream>
 
-#include "experiments/experiments.h"
+#include "experiments/command/command_line.h"
+#include "experiments/command/options.h"
 
 int main(int argc, char** argv) {
   const int status = springstab::run_command(argc, argv);

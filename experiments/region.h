@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/stability_region.h"
+#include "analysis/regions/stability_region.h"
 
 namespace springstab {
 

@@ -1,20 +1,16 @@
 // `springstab simulate`: runs a scene or a system of matrices with a step that is known to be stable.
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 
-#include "analysis/method_limits.h"
-#include "experiments/checkpoint.h"
-#include "experiments/experiments.h"
+#include "experiments/command/interrupt.h"
+#include "experiments/command/output.h"
 #include "experiments/explain.h"
-#include "experiments/frames.h"
-#include "experiments/identity.h"
-#include "experiments/interrupt.h"
-#include "experiments/measured_run.h"
-#include "experiments/mesh_report.h"
-#include "experiments/output.h"
-#include "experiments/step_chooser.h"
+#include "experiments/inputs/mesh_report.h"
+#include "experiments/runs/checkpoint.h"
+#include "experiments/runs/identity.h"
+#include "experiments/runs/measured_run.h"
+#include "experiments/runs/recorder.h"
+#include "experiments/runs/step_run.h"
 #include "solvers/io/input_error.h"
 #include "solvers/simulation.h"
 
@@ -62,88 +58,6 @@ Json identity(const CommonOptions& common, const SimulateOptions& o) {
                      contents_of(o.input, o.resume));
 }
 
-// Writes evenly spaced frames of a scene, or rows of a CSV file for matrices.
-class Recorder {
- public:
-  // Goes on after what another one kept(), if that is not null.
-  Recorder(Subject& subject, const SimulateOptions& options, const Json& kept)
-      : subject_(subject), options_(options) {
-    if (!kept.is_null()) {
-      for (const Json& frame : kept.at("frames")) frames_.push_back({frame[0], frame[1]});
-      due_ = kept.at("due");
-      most_ = kept.at("most");
-      for (int frame = 0; subject.scene() && frame < written(); ++frame)
-        expect_frame(options.output, options.format, frame);
-    }
-    if (options.output.empty() || subject.scene()) return;
-    csv_.emplace(options.output + "/trajectory.csv",
-                 kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>());
-    if (!kept.is_null()) return;
-    csv_->stream() << "t,kinetic_energy,potential_energy";
-    for (Eigen::Index i = 0; i < subject.system().size(); ++i) csv_->stream() << ",x" << i + 1;
-    csv_->stream() << '\n';
-  }
-
-  void record(double t, const State<Vector>& state) {
-    if (options_.output.empty()) return;
-    while (!frames_.empty() && t < frames_.back().t) {  // a divergence was undone
-      due_ = frames_.back().due;
-      frames_.pop_back();
-    }
-    if (t < next_time()) return;
-    if (subject_.scene()) {
-      write_frame(options_.output, options_.format, written(), subject_.vertices(state.x), subject_.faces());
-    } else {
-      csv_->stream() << t << ',' << subject_.system().kinetic_energy(state.v) << ','
-                     << subject_.system().potential_energy(state.x);
-      for (double x : state.x) csv_->stream() << ',' << x;
-      csv_->stream() << '\n';
-    }
-    frames_.push_back({t, due_});
-    most_ = std::max(most_, written());
-    while (next_time() <= t && due_ <= options_.frames) ++due_;
-  }
-
-  // Where it is; what was recorded is in the system's hands by then.
-  Json kept() {
-    Json frames = Json::array();
-    for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due});
-    return {{"frames", frames},
-            {"due", due_},
-            {"most", most_},
-            {"csv_bytes", csv_ ? Json(csv_->keep()) : Json()}};
-  }
-
-  void finish() {
-    if (csv_) csv_->commit();
-    for (int frame = written(); frame < most_; ++frame)  // of what was undone and not reached again
-      remove_frame(options_.output, options_.format, frame);
-  }
-
-  // The first frame beyond this run's that is there, of an earlier one; empty if none is.
-  std::string earlier() const {
-    if (options_.output.empty() || !subject_.scene()) return {};
-    const std::string path = frame_path(options_.output, options_.format, std::max(most_, written()));
-    return std::filesystem::exists(path) ? path : std::string();
-  }
-
-  int written() const { return static_cast<int>(frames_.size()); }
-
- private:
-  // A hair early: the time of a step is a rounded sum.
-  double next_time() const { return options_.duration * due_ / options_.frames * (1 - 1e-9); }
-
-  Subject& subject_;
-  const SimulateOptions& options_;
-  std::optional<OutputFile> csv_;
-  struct Frame {
-    double t;  // [s]
-    int due;
-  };
-  std::vector<Frame> frames_;
-  int due_ = 0, most_ = 0;
-};
-
 std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,
                   const SimulateOptions& options) {
   if (options.output.empty()) return "nothing was saved (with --output it would have been)";
@@ -167,156 +81,215 @@ const char* outcome(StepStatus status) {
   return "not converged";
 }
 
-}  // namespace
+// The model as the options want it.
+void prepare(Subject& subject, const SimulateOptions& options) {
+  if (options.designed_damping) {
+    expect_designable(subject);
+    subject.design_damping();
+  }
+  Scene* const scene = subject.scene();
+  if (!scene && options.projected_hessian)
+    throw InputError("--hessian", 0, "'projected' is for scenes, expected 'exact'");
+  if (!scene && options.explain) throw InputError("--explain", 0, "is for scenes, expected no matrices");
+  if (options.projected_hessian) scene->set_hessian(Hessian::projected);
+}
 
-int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
-  check(options);
-  find_method(options.method);
-  Subject subject(options.input);
-  print_mesh_notes(subject);
-  if (options.designed_damping) subject.design_damping();
-  if (options.projected_hessian) {
-    if (!subject.scene()) throw InputError("--hessian", 0, "'projected' is for scenes, expected 'exact'");
-    subject.scene()->set_hessian(Hessian::projected);
-  }
-  if (options.explain && !subject.scene())
-    throw InputError("--explain", 0, "is for scenes, expected no matrices");
-  StepChooser chooser(subject, common, options);
-  const std::optional<StepPlan> plan = chooser.first_plan();
-  if (!plan) {
-    if (common.json) {
-      print_json(Json{{"method", options.method}, {"step", nullptr}, {"status", chooser.reason()}});
-    } else {
-      std::cout << chooser.reason() << '\n';
-    }
-    return no_answer;
-  }
-  const double h = plan->h;
-  if (options.direct && !subject.scene())
+void prepare_solver(Subject& subject, const SimulateOptions& options) {
+  Scene* const scene = subject.scene();
+  if (!scene && options.direct)
     throw InputError("--solver", 0, "is for scenes; systems of matrices are always solved directly");
-  if (Scene* scene = subject.scene())
+  if (scene)
     scene->solver() = {.kind = options.direct ? SolverKind::cholesky : SolverKind::conjugate_gradients,
                        .tolerance = options.cg_tolerance};
+}
 
-  const State<Vector> start = subject.initial_state(common.seed);
-  const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
-  if (options.explain && !common.json) std::cout << explanation_table(explanation);
-  System& system = subject.system();
-  const EnergyWatch watch = chooser.watch(start);
-  if (!options.output.empty()) make_folder(options.output);
-  CheckpointFile checkpoint(options.output, identity(common, options), options.resume, common.quiet);
-  KeptRun begin = checkpoint.read().value_or(KeptRun{start_of(*plan), start, {}});
-  Json& kept = begin.others;
-  if (!kept.is_null()) {
-    chooser.go_on(kept.at("chooser"));
-    if (!common.quiet) std::cerr << text("springstab: going on at t = %.6g s\n", begin.run.time);
+int say_no_plan(const StepChooser& chooser, bool json) {
+  if (json) {
+    print_json(
+        Json{{"method", chooser.method().name()}, {"step", nullptr}, {"status", reason_text(chooser)}});
+  } else {
+    std::cout << reason_text(chooser) << '\n';
   }
-  Recorder recorder(subject, options, kept.is_null() ? Json() : kept.at("recorder"));
-  CountingSystem counted(system, kept.is_null() ? Counts() : counts_of(kept.at("counts")));
-  const double cpu_before = cpu_seconds() - (kept.is_null() ? 0 : kept.at("cpu_seconds").get<double>());
-  State<Vector> state = std::move(begin.state);
+  return no_answer;
+}
+
+// What a run came to.
+struct Course {
+  SimulationResult result;
+  State<Vector> start, end;
+  EnergyWatch watch;
+  Counts counts;
+  double cpu_seconds = 0, step = 0;
+  bool stopped = false;
+
+  bool diverged() const { return result.status == StepStatus::diverged; }
+};
+
+// Runs from the start or from where a run was left.
+Course run(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
+           StepChooser& chooser, const StepPlan& plan, const State<Vector>& start, CheckpointFile& checkpoint,
+           const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder) {
+  Course course{
+      .result = {}, .start = start, .end = {}, .watch = chooser.watch(start), .counts = {}, .step = plan.h};
+  KeptRun begin = checkpoint.read().value_or(KeptRun{start_of(plan), start, {}});
+  const Json& others = begin.others;
+  const bool resumed = !others.is_null();
+  if (resumed) go_on(chooser, others.at("chooser"));
+  if (resumed && !common.quiet) std::cerr << text("springstab: going on at t = %.6g s\n", begin.run.time);
+  recorder.emplace(subject, options, resumed ? others.at("recorder") : Json());
+  CountingSystem counted(subject.system(), resumed ? counts_of(others.at("counts")) : Counts());
+  const double cpu_before = cpu_seconds() - (resumed ? others.at("cpu_seconds").get<double>() : 0);
+  course.end = std::move(begin.state);
   Progress progress("simulating", common.quiet);
-  const StopOnInterrupt interrupt;
-  const SimulationResult result = resume_simulation(
-      counted, *make_stepper(options.method), std::move(begin.run), watch, state,
+  course.result = resume_simulation(
+      counted, *Method(options.method).stepper(), std::move(begin.run), course.watch, course.end,
       [&](const RunSoFar& so_far, const State<Vector>& s) {
-        recorder.record(so_far.time, s);
+        recorder->record(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
           checkpoint.save({so_far,
                            s,
-                           {{"chooser", chooser.kept()},
-                            {"recorder", recorder.kept()},
+                           {{"chooser", kept(chooser, subject)},
+                            {"recorder", recorder->kept()},
                             {"counts", json_of(counted.counts())},
                             {"cpu_seconds", cpu_seconds() - cpu_before}}});
         if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
         return !interrupt.requested();
       },
       chooser.policy());
-  const double cpu = cpu_seconds() - cpu_before;
-  const Counts counts = counted.counts();
-  const bool stopped = interrupt.requested();
-  if (!stopped) recorder.kept();  // a full disk shows before the report
+  course.cpu_seconds = cpu_seconds() - cpu_before;
+  course.counts = counted.counts();
+  course.stopped = interrupt.requested();
+  return course;
+}
 
-  const bool diverged = result.status == StepStatus::diverged;
+Json json_of(const Course& course, const SimulateOptions& options, Subject& subject,
+             const StepChooser& chooser, int frames) {
+  System& system = subject.system();
   const auto energy = [&](const State<Vector>& s) {
-    return system.kinetic_energy(s.v) + system.potential_energy(s.x);
+    return number(system.kinetic_energy(s.v) + system.potential_energy(s.x));
   };
-  const double energy_before = energy(start), energy_after = energy(state);
-  const bool grows = watch.grows(system.kinetic_energy(state.v), system.potential_energy(state.x));
+  const bool linearized = Method(options.method).info().linearized;
+  const StepDecisions& decisions = chooser.decisions();
   Json report{{"method", options.method},
-              {"status", stopped ? "interrupted" : outcome(result.status)},
-              {"step", h},
-              {"steps", result.steps},
-              {"diverged", diverged},
-              {"diverged_at", diverged ? number(result.failed_at) : Json()},
-              {"grows", grows},
-              {"last_step", chooser.present_step()},
-              {"last_relinearize",
-               find_method(options.method).linearized ? Json(chooser.present_relinearize()) : Json()},
-              {"cpu_seconds", cpu},
+              {"status", course.stopped ? "interrupted" : outcome(course.result.status)},
+              {"step", course.step},
+              {"steps", course.result.steps},
+              {"diverged", course.diverged()},
+              {"diverged_at", course.diverged() ? number(course.result.failed_at) : Json()},
+              {"grows", course.watch.grows(system.kinetic_energy(course.end.v),
+                                           system.potential_energy(course.end.x))},
+              {"last_step", decisions.h},
+              {"last_relinearize", linearized ? Json(decisions.relinearize) : Json()},
+              {"cpu_seconds", course.cpu_seconds},
               {"counts",
-               {{"force_evaluations", counts.force_evaluations},
-                {"hessian_assemblies", counts.hessian_assemblies},
-                {"block_products", counts.block_products},
-                {"cg_iterations", counts.cg_iterations},
-                {"relinearizations", find_method(options.method).linearized ? counts.hessian_assemblies : 0},
-                {"rollbacks", chooser.rollbacks()},
-                {"halved_steps", chooser.halved_steps()}}},
-              {"energy", {{"initial", number(energy_before)}, {"final", number(energy_after)}}},
-              {"frames", recorder.written()},
+               {{"force_evaluations", course.counts.force_evaluations},
+                {"hessian_assemblies", course.counts.hessian_assemblies},
+                {"block_products", course.counts.block_products},
+                {"cg_iterations", course.counts.cg_iterations},
+                {"relinearizations", linearized ? course.counts.hessian_assemblies : 0},
+                {"rollbacks", decisions.rollbacks},
+                {"halved_steps", decisions.halved_steps}}},
+              {"energy", {{"initial", energy(course.start)}, {"final", energy(course.end)}}},
+              {"frames", frames},
               {"mesh", mesh_json(subject)}};
   report["damping"] = {{"d0", number(subject.damping().d0)}, {"alpha", number(subject.damping().alpha)}};
   if (Scene* scene = subject.scene()) {
-    const Eigen::Vector3d last = scene->positions(state.x).back();
+    const Eigen::Vector3d last = scene->positions(course.end.x).back();
     report["last_particle"] = {{"position", {last.x(), last.y(), last.z()}}};
     report["solver"] = options.direct ? "direct" : "cg";
     report["cg_tolerance"] = options.direct ? Json() : Json(options.cg_tolerance);
   }
-  if (options.explain) report["explanation"] = explanation;
+  return report;
+}
+
+void print_end(const Course& course, const SimulateOptions& options) {
+  const SimulationResult& result = course.result;
+  std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps,
+                    course.step, course.cpu_seconds);
+  if (course.stopped) {
+    std::cout << text("interrupted at t = %.6g s\n", result.time);
+  } else if (course.diverged()) {
+    std::cout << text("diverged at t = %.6g s\n", result.failed_at);
+  } else if (result.status != StepStatus::done) {
+    std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
+                      outcome(result.status));
+  } else {
+    std::cout << "done\n";
+  }
+}
+
+void print_decisions(const StepDecisions& decisions, bool linearized) {
+  if (decisions.rollbacks > 0)
+    std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s%s\n",
+                      decisions.rollbacks, decisions.h,
+                      linearized ? text(", linearized every %.6g s", decisions.relinearize).c_str() : "");
+  if (decisions.halved_steps > 0)
+    std::cout << text("%ld steps were halved because 1 + hD' + h²K' was not positive definite\n",
+                      decisions.halved_steps);
+}
+
+void print_report(const Course& course, const SimulateOptions& options, Subject& subject,
+                  const StepChooser& chooser, int frames) {
+  System& system = subject.system();
+  const auto energy = [&](const State<Vector>& s) {
+    return system.kinetic_energy(s.v) + system.potential_energy(s.x);
+  };
+  print_end(course, options);
+  print_decisions(chooser.decisions(), Method(options.method).info().linearized);
+  std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy(course.start),
+                    energy(course.end));
+  if (course.watch.grows(system.kinetic_energy(course.end.v), system.potential_energy(course.end.x)))
+    std::cout << "the structure is unstable: its motion grows by itself\n";
+  if (Scene* scene = subject.scene()) {
+    const Eigen::Vector3d p = scene->positions(course.end.x).back();
+    std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p.x(), p.y(), p.z());
+  }
+  if (frames > 0) std::cout << text("%d frames in %s\n", frames, options.output.c_str());
+}
+
+int run_subject(const CommonOptions& common, const SimulateOptions& options, Subject& subject) {
+  prepare(subject, options);
+  StepChooser chooser(subject, step_options(common, options));
+  const std::optional<StepPlan> plan = chooser.first_plan();
+  if (!plan) return say_no_plan(chooser, common.json);
+  prepare_solver(subject, options);
+  const State<Vector> start = subject.initial_state(common.seed);
+  const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
+  if (options.explain && !common.json) std::cout << explanation_table(explanation);
+  if (!options.output.empty()) make_folder(options.output);
+  CheckpointFile checkpoint(options.output, identity(common, options), options.resume, common.quiet);
+  std::optional<Recorder> recorder;
+  const StopOnInterrupt interrupt;
+  const Course course = run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder);
+  if (!course.stopped) recorder->kept();  // a full disk shows before the report
+
   if (common.json) {
+    Json report = json_of(course, options, subject, chooser, recorder->written());
+    if (options.explain) report["explanation"] = explanation;
     print_json(report);
   } else {
-    std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps,
-                      h, cpu);
-    if (stopped) {
-      std::cout << text("interrupted at t = %.6g s\n", result.time);
-    } else if (diverged) {
-      std::cout << text("diverged at t = %.6g s\n", result.failed_at);
-    } else if (result.status != StepStatus::done) {
-      std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
-                        outcome(result.status));
-    } else {
-      std::cout << "done\n";
-    }
-    if (chooser.rollbacks() > 0)
-      std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s%s\n",
-                        chooser.rollbacks(), chooser.present_step(),
-                        find_method(options.method).linearized
-                            ? text(", linearized every %.6g s", chooser.present_relinearize()).c_str()
-                            : "");
-    if (chooser.halved_steps() > 0)
-      std::cout << text("%ld steps were halved because 1 + hD' + h²K' was not positive definite\n",
-                        chooser.halved_steps());
-    std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy_before, energy_after);
-    if (grows) std::cout << "the structure is unstable: its motion grows by itself\n";
-    if (report.contains("last_particle")) {
-      const Json& p = report["last_particle"]["position"];
-      std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p[0].get<double>(), p[1].get<double>(),
-                        p[2].get<double>());
-    }
-    if (recorder.written() > 0)
-      std::cout << text("%d frames in %s\n", recorder.written(), options.output.c_str());
+    print_report(course, options, subject, chooser, recorder->written());
   }
-  if (stopped) {
-    std::cerr << "springstab: interrupted; " << saved(recorder, checkpoint, options) << '\n';
+  if (course.stopped) {
+    std::cerr << "springstab: interrupted; " << saved(*recorder, checkpoint, options) << '\n';
     return interrupted;
   }
   if (std::cout.flush()) checkpoint.finish();
-  recorder.finish();
-  if (const std::string earlier = recorder.earlier(); !earlier.empty())
+  recorder->finish();
+  if (const std::string earlier = recorder->earlier(); !earlier.empty())
     std::cerr << "springstab: note: " << earlier
               << ": this frame, and those after it, are of an earlier run\n";
-  return diverged ? run_diverged : result.status == StepStatus::done ? done : no_answer;
+  return course.diverged() ? run_diverged : course.result.status == StepStatus::done ? done : no_answer;
+}
+
+}  // namespace
+
+int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
+  check(options);
+  Method{options.method};
+  Subject subject(options.input);
+  print_mesh_notes(subject);
+  return naming_duration([&] { return run_subject(common, options, subject); });
 }
 
 }  // namespace springstab

@@ -8,9 +8,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "tests/scratch.h"
@@ -48,9 +46,7 @@ class Command {
     const int status = pclose(pipe);
     BOOST_REQUIRE(WIFEXITED(status));
     outcome.status = WEXITSTATUS(status);
-    std::ostringstream text;
-    text << std::ifstream(err).rdbuf();
-    outcome.err = text.str();
+    outcome.err = content_of(err);
     std::filesystem::remove(err);
     return outcome;
   }

@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/transition_operator.h"
+#include "analysis/spectra/transition_operator.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/scene/spring_cloth.h"
 
@@ -65,7 +66,7 @@ inline StructuralMatrices matrices(const SpringNet& net, double d0 = 0) {
       d.block<3, 3>(3 * p, 3 * q) += sign * s.damping * axial;
     }
   }
-  for (Eigen::Index i = 0; i < n; ++i) m(i, i) = net.mass[i / 3];
+  m = lumped_mass(net.mass);
   const Eigen::Index r = n - 3;
   d += d0 * m;
   const auto sparse = [&](const Eigen::MatrixXd& a) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,15 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "experiments/output.h"
+#include "experiments/command/output.h"
+#include "tests/scratch.h"
 
 namespace springstab::test {
-
-inline std::string content_of(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// Without what is measured by a clock, and what is fitted to that.
 inline Json untimed(Json report) {

@@ -1,7 +1,6 @@
 // The laws of the triangle cloth: what its energies are, that forces are differenced energies and stiffness
 // matrices differenced forces, what is positive semidefinite, what damping does; and which triangles and
 // hinges a grid and a mesh have, where these lie in the cloth at rest, and what is refused.
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
@@ -16,13 +15,21 @@
 #include <vector>
 
 #include "solvers/io/input_error.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/scene/bending.h"
 #include "solvers/scene/condition_damping.h"
 #include "solvers/scene/triangle_cloth.h"
+#include "tests/dense.h"
+#include "tests/meshes.h"
+#include "tests/refusals.h"
 
 BOOST_AUTO_TEST_SUITE(cloth_energies)
 
 using namespace springstab;
+using springstab::test::expect_error;
+using springstab::test::faces_of;
+using springstab::test::make_mesh;
+using springstab::test::smallest_eigenvalue;
 
 namespace {
 
@@ -53,27 +60,6 @@ class Random {
  private:
   std::mt19937_64 engine_;
 };
-
-/// A mesh whose vertex v stands on line v + 1 of the file and whose faces follow.
-Mesh make_mesh(Positions vertices, const std::vector<std::vector<int>>& faces) {
-  Mesh mesh;
-  mesh.source = "cloth.obj";
-  mesh.vertices = std::move(vertices);
-  mesh.vertex_line.resize(mesh.vertices.size());
-  std::iota(mesh.vertex_line.begin(), mesh.vertex_line.end(), 1L);
-  for (const auto& face : faces) {
-    mesh.face_vertices.insert(mesh.face_vertices.end(), face.begin(), face.end());
-    mesh.face_offsets.push_back(static_cast<int>(mesh.face_vertices.size()));
-    mesh.face_line.push_back(static_cast<long>(mesh.vertices.size() + mesh.face_line.size() + 1));
-  }
-  return mesh;
-}
-
-std::vector<std::vector<int>> faces_of(const Mesh& mesh) {
-  std::vector<std::vector<int>> faces;
-  for (int f = 0; f < mesh.faces(); ++f) faces.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
-  return faces;
-}
 
 constexpr double spacing = 0.1;
 constexpr int rows = 4, columns = 5;
@@ -281,10 +267,6 @@ void check_equal(const Dense& found, const Dense& expected, double relative) {
              "relative difference " << (found - expected).norm() / expected.norm());
 }
 
-double smallest_eigenvalue(const Dense& a) {
-  return Eigen::SelfAdjointEigenSolver<Dense>(a).eigenvalues()[0];
-}
-
 Vector turned(const Eigen::Matrix3d& turn, const Vector& u) {
   return (turn * u.reshaped(3, u.size() / 3)).reshaped();
 }
@@ -312,16 +294,6 @@ Model single_triangle(const std::array<Vector2d, 3>& uv, const ClothMaterial& of
   cloth.triangles = {{{0, 1, 2}, uv}};
   cloth.material = of;
   return cloth;
-}
-
-void expect_error(const std::function<void()>& action, const std::string& place, const std::string& words) {
-  BOOST_CHECK_EXCEPTION(action(), InputError, [&](const InputError& error) {
-    const std::string text = error.what();
-    const bool good =
-        text.starts_with(place + ": ") && text.find(words) != text.npos && text.find("expected") != text.npos;
-    if (!good) BOOST_TEST_MESSAGE("\"" << text << "\" for " << place << ", " << words);
-    return good;
-  });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ BOOST_FIXTURE_TEST_SUITE(command, springstab::test::Command)
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using springstab::test::Command;
+using springstab::test::content_of;
 using springstab::test::lines;
 using springstab::test::Outcome;
 
@@ -286,10 +287,9 @@ BOOST_AUTO_TEST_CASE(divergence_is_status_4_with_its_time) {
   BOOST_TEST(close(steps_to_it, std::round(steps_to_it)));
   BOOST_TEST((steps_to_it > report["steps"] && steps_to_it <= report["steps"].get<double>() + 16));
   for (const fs::directory_entry& frame : fs::directory_iterator(folder() / "frames")) {
-    std::ostringstream text;
-    text << std::ifstream(frame.path()).rdbuf();
-    BOOST_TEST(text.str().find("nan") == std::string::npos);
-    BOOST_TEST(text.str().find("inf") == std::string::npos);
+    const std::string text = content_of(frame.path());
+    BOOST_TEST(text.find("nan") == std::string::npos);
+    BOOST_TEST(text.find("inf") == std::string::npos);
   }
 }
 
@@ -330,10 +330,9 @@ BOOST_AUTO_TEST_CASE(a_motion_that_explodes_ends_with_status_4_and_its_last_good
       BOOST_TEST(report["frames"] > 0);
       long frames = 0;
       for (const fs::directory_entry& frame : fs::directory_iterator(folder() / method)) {
-        std::ostringstream text;
-        text << std::ifstream(frame.path()).rdbuf();
-        BOOST_TEST(text.str().find("nan") == std::string::npos);
-        BOOST_TEST(text.str().find("inf") == std::string::npos);
+        const std::string text = content_of(frame.path());
+        BOOST_TEST(text.find("nan") == std::string::npos);
+        BOOST_TEST(text.find("inf") == std::string::npos);
         ++frames;
       }
       BOOST_TEST(report["frames"] == frames);
@@ -462,11 +461,7 @@ BOOST_AUTO_TEST_CASE(matrices_give_limits_and_a_trajectory_from_the_seed) {
   BOOST_TEST((*this)(run + "a --seed 1").status == 0);
   BOOST_TEST((*this)(run + "b --seed 1").status == 0);
   BOOST_TEST((*this)(run + "c --seed 2").status == 0);
-  const auto content = [&](const char* name) {
-    std::ostringstream text;
-    text << std::ifstream(folder() / name / "trajectory.csv").rdbuf();
-    return text.str();
-  };
+  const auto content = [&](const char* name) { return content_of(folder() / name / "trajectory.csv"); };
   BOOST_TEST(content("a") == content("b"));
   BOOST_TEST(content("a") != content("c"));
   double x1, x2;
@@ -617,10 +612,9 @@ BOOST_AUTO_TEST_CASE(a_solid_of_tetrahedra_is_a_scene_like_any_other) {
     BOOST_TEST(std::abs(fall - 0.049) < 0.006);
   }
   BOOST_TEST((*this)("limits solid.json --json").json()["damping"]["kind"] == "general");
-  std::ostringstream frame;
-  frame << std::ifstream(folder() / "out" / "frame_00002.obj").rdbuf();
-  BOOST_TEST(lines(frame.str()) == 6 + 6);  // the file's vertices, and the surface
-  BOOST_TEST(frame.str().find("v 9 9 9\n") != std::string::npos);
+  const std::string frame = content_of(folder() / "out" / "frame_00002.obj");
+  BOOST_TEST(lines(frame) == 6 + 6);  // the file's vertices, and the surface
+  BOOST_TEST(frame.find("v 9 9 9\n") != std::string::npos);
 
   const std::pair<std::string, std::string> refused[] = {
       {"limits cloth.json", "cloth.json:1: 'model' is 'baraff-witkin', expected 'tetrahedra'"},

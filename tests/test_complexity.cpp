@@ -1,17 +1,17 @@
 // How costs grow, and how k0 is found again: fits, the power method, and races whose counts no clock changes.
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <vector>
 
-#include "analysis/power_iteration.h"
-#include "analysis/power_law.h"
-#include "analysis/spectrum.h"
-#include "experiments/complexity/complexity_studies.h"
-#include "experiments/complexity/k0_watch.h"
-#include "solvers/stepper.h"
+#include "analysis/errors/power_law.h"
+#include "analysis/method.h"
+#include "analysis/spectra/power_iteration.h"
+#include "analysis/spectra/spectrum.h"
+#include "experiments/studies/complexity/complexity_studies.h"
+#include "experiments/studies/complexity/k0_watch.h"
+#include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(complexity)
 
@@ -125,8 +125,8 @@ BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
   const Drape drape{.side = 8};
   const StiffestMode k0 = k0_of(drape, quiet);
   std::vector<Heat> heats;
-  for (const MethodInfo& method : all_methods()) {
-    const std::string name(method.name);
+  for (const Method& method : all_methods()) {
+    const std::string name(method.name());
     heats.push_back({{name, name}, drape, k0, 0.05});
   }
   heats.push_back(
@@ -136,17 +136,17 @@ BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
   double leu_alpha = 0;
   for (std::size_t i = 0; i < first.size(); ++i) BOOST_TEST_CONTEXT(heats[i].contestant.name) {
       const HeatResult& r = first[i];
-      const MethodInfo& method = find_method(heats[i].contestant.method);
+      const Method method = heats[i].contestant.method;
       BOOST_TEST((r.finished && r.rollbacks == 0 && r.halved_steps == 0));
       BOOST_TEST(r.cpu_seconds.size() == 3);
       BOOST_TEST(r.h * static_cast<double>(r.steps) == 0.05, boost::test_tools::tolerance(1e-12));
       BOOST_TEST(r.counts.block_products == second[i].counts.block_products);
       BOOST_TEST(r.counts.force_evaluations == second[i].counts.force_evaluations);
-      if (method.implicit) {
+      if (method.info().implicit) {
         BOOST_TEST(r.steps == 5);
         BOOST_TEST(r.counts.hessian_assemblies == 5);
         BOOST_TEST(r.counts.cg_iterations > 5);
-      } else if (method.linearized) {
+      } else if (method.info().linearized) {
         BOOST_TEST(r.counts.hessian_assemblies == 5);
         BOOST_TEST(r.counts.force_evaluations == 5);
         BOOST_TEST(r.counts.block_products >= r.steps);
@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
         BOOST_TEST(r.counts.force_evaluations % r.steps == 0);
         BOOST_TEST(r.counts.hessian_assemblies == 0);
       }
-      if (method.name == "linearized-explicit-euler") leu_alpha = r.alpha;
+      if (method.name() == "linearized-explicit-euler") leu_alpha = r.alpha;
     }
   BOOST_TEST(leu_alpha > 0);
   BOOST_TEST(first[first.size() - 2].alpha == 0);
@@ -178,7 +178,8 @@ BOOST_AUTO_TEST_CASE(a_study_writes_a_complete_row_for_every_run) {
       BOOST_TEST(abscissa(study.study, series.points[i]) > abscissa(study.study, series.points[i - 1]));
       BOOST_TEST(series.points[i].counts.cg_iterations < series.points[i - 1].counts.cg_iterations);
     }
-  const auto path = std::filesystem::temp_directory_path() / "springstab_complexity_runs.csv";
+  const test::ScratchFolder folder;
+  const auto path = folder.path() / "runs.csv";
   write_runs(path.string(), study);
   std::ifstream file(path);
   std::string header, row;
@@ -199,7 +200,6 @@ BOOST_AUTO_TEST_CASE(a_study_writes_a_complete_row_for_every_run) {
     BOOST_TEST((row.find(",,") == std::string::npos && row.find("nan") == std::string::npos));
   }
   BOOST_TEST(rows == study.series.size() * study.series[0].points.size() * 3);
-  std::filesystem::remove(path);
 }
 
 // A Rayleigh quotient never exceeds the largest eigenvalue but for rounding and the reference's own error.

@@ -3,11 +3,11 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 
-#include "analysis/generator_spectrum.h"
-#include "analysis/numerical_range.h"
-#include "analysis/step_limits.h"
-#include "experiments/divergence/cloth.h"
-#include "experiments/divergence/examples.h"
+#include "analysis/limits/step_limits.h"
+#include "analysis/spectra/generator_spectrum.h"
+#include "analysis/spectra/numerical_range.h"
+#include "experiments/studies/divergence/cloth.h"
+#include "experiments/studies/divergence/examples.h"
 #include "tests/command.h"
 #include "tests/random_nets.h"
 

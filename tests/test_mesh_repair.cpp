@@ -1,49 +1,30 @@
 // What is mended in a mesh file: each defect by itself and all together, counted; what is left is the mesh
 // that the file meant, and pins and frames keep the file's numbers.
 #include <boost/test/unit_test.hpp>
-#include <filesystem>
-#include <fstream>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "analysis/spectrum.h"
-#include "experiments/input/subject.h"
-#include "experiments/mesh_report.h"
+#include "analysis/method.h"
+#include "analysis/spectra/spectrum.h"
+#include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/subject.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/obj.h"
 #include "solvers/scene/mesh_repair.h"
-#include "solvers/stepper.h"
+#include "tests/meshes.h"
+#include "tests/scratch.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(mesh_repair)
 
 using namespace springstab;
+using springstab::test::Faces;
+using springstab::test::faces_of;
+using springstab::test::make_mesh;
 
 namespace {
 
 using Positions = std::vector<Eigen::Vector3d>;
-using Faces = std::vector<std::vector<int>>;
-
-/// A mesh whose vertex v stands on line v + 1 of the file and whose faces follow.
-Mesh make_mesh(Positions vertices, const Faces& faces) {
-  Mesh mesh;
-  mesh.source = "cloth.obj";
-  mesh.vertices = std::move(vertices);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) mesh.vertex_line.push_back(static_cast<long>(v) + 1);
-  for (const auto& face : faces) {
-    mesh.face_vertices.insert(mesh.face_vertices.end(), face.begin(), face.end());
-    mesh.face_offsets.push_back(static_cast<int>(mesh.face_vertices.size()));
-    mesh.face_line.push_back(static_cast<long>(mesh.vertices.size() + mesh.face_line.size() + 1));
-  }
-  return mesh;
-}
-
-Faces faces_of(const Mesh& mesh) {
-  Faces faces;
-  for (int f = 0; f < mesh.faces(); ++f) faces.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
-  return faces;
-}
 
 /// merged, shortened, degenerate, duplicate, unreferenced, crowded
 std::vector<int> counts(const MeshRepair& r) {
@@ -61,24 +42,15 @@ Positions with(Positions list, const Positions& more) {
 /// A scene from a file that is there as long as this.
 class FromFile {
  public:
-  FromFile(const std::string& text, const std::string& pin = "")
-      : path_(std::filesystem::temp_directory_path() /
-              ("springstab_repair_" + std::to_string(std::random_device{}()) + ".obj")) {
-    std::ofstream(path_) << text;
+  FromFile(const std::string& text, const std::string& pin = "") : file_(text, "cloth.obj") {
     InputOptions input;
-    input.file = path_.string();
+    input.file = file_.name();
     input.pin = pin;
     subject.emplace(input);
   }
-  ~FromFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  FromFile(const FromFile&) = delete;
-  FromFile& operator=(const FromFile&) = delete;
 
  private:
-  std::filesystem::path path_;
+  test::ScratchFile file_;
 
  public:
   std::optional<Subject> subject;
@@ -254,7 +226,7 @@ BOOST_AUTO_TEST_CASE(pins_and_frames_keep_the_numbers_of_the_file) {
   BOOST_REQUIRE((a.x == b.x));
   for (Subject* s : {&plain, &subject}) {
     State<Vector>& state = s == &plain ? a : b;
-    const auto stepper = make_stepper("symplectic-euler");
+    const auto stepper = Method("symplectic-euler").stepper();
     for (int i = 0; i < 20; ++i) BOOST_REQUIRE((stepper->step(s->system(), 1e-3, state) == StepStatus::done));
   }
   BOOST_TEST((a.x == b.x));
@@ -299,11 +271,11 @@ BOOST_AUTO_TEST_CASE(meshes_of_other_programs_are_mended_as_published) {
             input.pin = "0";
             Subject subject(input);
             const State<Vector> start = subject.initial_state(1);
-            const StiffestMode k0 = stiffest_mode(subject.structure(start), {});
+            const StiffestMode k0 = stiffest_mode(subject.structure(start).matrices, {});
             BOOST_TEST(k0.converged);
             BOOST_TEST(k0.value > 1);
             State<Vector> state = start;
-            const auto stepper = make_stepper("symplectic-euler");
+            const auto stepper = Method("symplectic-euler").stepper();
             const double h = 1 / std::sqrt(k0.value);  // half the limit
             for (int i = 0; i < 50; ++i)
               BOOST_REQUIRE((stepper->step(subject.system(), h, state) == StepStatus::done));

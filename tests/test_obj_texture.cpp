@@ -1,17 +1,15 @@
 // Texture coordinates in OBJ files: which corner has which, when a mesh has none, and what is refused.
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "experiments/input/subject.h"
-#include "experiments/mesh_report.h"
+#include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/subject.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/obj.h"
 #include "tests/command.h"
+#include "tests/scratch.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(obj_texture)
@@ -22,30 +20,11 @@ using springstab::InputError;
 using springstab::Json;
 using springstab::Mesh;
 using springstab::Subject;
+using springstab::test::ScratchFile;
 
 namespace {
 
-/// An OBJ file of this text; removed at the end.
-class File {
- public:
-  explicit File(const std::string& text)
-      : path_(std::filesystem::temp_directory_path() /
-              ("springstab_texture_" + std::to_string(std::random_device{}()) + ".obj")) {
-    std::ofstream(path_, std::ios::binary) << text;
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  std::string name() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
-Mesh obj(const std::string& text) { return springstab::read_obj(File(text).name()); }
+Mesh obj(const std::string& text) { return springstab::read_obj(ScratchFile(text).name()); }
 
 const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
 
@@ -77,7 +56,7 @@ Vector2d moved(Vector2d p, bool last) {
 }
 
 Subject cloth(const std::string& text, std::optional<double> texture_unit = {}) {
-  const File file(text);
+  const ScratchFile file(text);
   springstab::SceneDescription scene;
   scene.geometry = file.name();
   ClothMaterial material;
@@ -137,7 +116,7 @@ BOOST_AUTO_TEST_CASE(malformed_coordinates_and_indices_are_refused_with_their_li
       {"vt 0 0\nf 1/1 2/1 9/1\n", 6, "vertex index 9 is out of range"},
   };
   for (const auto& c : cases) {
-    const File file(vertices + c.text);
+    const ScratchFile file(vertices + c.text);
     BOOST_CHECK_EXCEPTION(springstab::read_obj(file.name()), InputError, [&](const InputError& error) {
       const std::string text = error.what();
       const bool good = text.starts_with(file.name() + ":" + std::to_string(c.line) + ": ") &&
@@ -204,7 +183,7 @@ BOOST_AUTO_TEST_CASE(maps_that_are_not_used_are_told_apart) {
   BOOST_TEST(strain_energy(subject) < 1e-20);
   const std::string flat = "vt 0 0\nvt 9 0\nvt 0 1\nf 1/1 2/2 3/3\n";
   BOOST_TEST(springstab::mesh_json(cloth(vertices + flat))["texture_map"].is_null());
-  const File springs(folded_with(pressed));
+  const ScratchFile springs(folded_with(pressed));
   springstab::InputOptions input;
   input.file = springs.name();
   BOOST_TEST(springstab::mesh_json(Subject(input))["texture_map"].is_null());

@@ -5,10 +5,7 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <locale>
-#include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -19,7 +16,9 @@
 #include "solvers/io/obj.h"
 #include "solvers/io/text_file.h"
 #include "tests/fuzz/readers.h"
+#include "tests/scratch.h"
 #include "tests/shared_data.h"
+#include "tests/texts.h"
 
 BOOST_AUTO_TEST_SUITE(readers)
 
@@ -27,31 +26,18 @@ using springstab::InputError;
 using springstab::Mesh;
 using springstab::read_matrix;
 using springstab::read_obj;
+using springstab::test::content_of;
+using springstab::test::replaced;
+using springstab::test::ScratchFile;
+using springstab::test::ScratchFolder;
+using springstab::test::with_crlf;
+using springstab::test::with_line_ends;
 
 namespace {
 
-/// A path that nothing else has; what is there is removed at the end.
-class TemporaryPath {
- public:
-  explicit TemporaryPath(const std::string& suffix = "")
-      : path_(std::filesystem::temp_directory_path() /
-              ("springstab_readers_" + std::to_string(std::random_device{}()) + suffix)) {}
-  TemporaryPath(const TemporaryPath&) = delete;
-  TemporaryPath& operator=(const TemporaryPath&) = delete;
-  ~TemporaryPath() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::string name() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
 template <class Read>
 auto read_text(const Read& read, const std::string& text, const std::string& suffix = "") {
-  const TemporaryPath file(suffix);
-  std::ofstream(file.name(), std::ios::binary) << text;
+  const ScratchFile file(text, "file" + suffix);
   return read(file.name());
 }
 
@@ -60,12 +46,6 @@ Mesh obj(const std::string& text) { return read_text(read_obj, text); }
 Eigen::SparseMatrix<double> read_matrix_as_is(const std::string& path) { return read_matrix(path); }
 
 Eigen::MatrixXd matrix(const std::string& text) { return read_text(read_matrix_as_is, text).toDense(); }
-
-std::string contents(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 /// A file that must be refused: in which line, and with which words.
 struct Malformed {
@@ -77,8 +57,7 @@ struct Malformed {
 template <class Read>
 void check_refused(const Read& read, const std::string& suffix, const std::vector<Malformed>& cases) {
   for (const Malformed& wrong : cases) BOOST_TEST_CONTEXT("the file\n" << wrong.text) {
-      const TemporaryPath file(suffix);
-      std::ofstream(file.name(), std::ios::binary) << wrong.text;
+      const ScratchFile file(wrong.text, "file" + suffix);
       const std::string place = file.name() + (wrong.line ? ":" + std::to_string(wrong.line) : "") + ": ";
       std::string message = "(read without an error)";
       try {
@@ -105,14 +84,6 @@ void check_every_cut_is_refused(const std::string& text) {
     }
   }
 }
-
-std::string with_line_ends(const std::string& text, const std::string& end) {
-  std::string changed;
-  for (const char c : text) changed += c == '\n' ? end : std::string(1, c);
-  return changed;
-}
-
-std::string with_crlf(const std::string& text) { return with_line_ends(text, "\r\n"); }
 
 const std::string symmetric_market =
     "%%MatrixMarket matrix coordinate real symmetric\n"
@@ -143,18 +114,12 @@ std::string harwell_boeing(const std::string& type = "RSA",
 
 const Eigen::Matrix3d harwell_boeing_matrix{{4, -1, 0}, {-1, 4, -2}, {0, -2, 5}};
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  BOOST_REQUIRE(at != text.npos);
-  return text.replace(at, what.size(), by);
-}
-
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_refused_by_name_and_reason) {
-  const TemporaryPath missing, directory, empty;
-  std::filesystem::create_directory(directory.name());
-  std::ofstream(empty.name()).close();
+  const ScratchFolder folder;
+  const std::string directory = folder.path(), missing = folder.path() / "missing",
+                    empty = folder.file("empty", "");
   const auto refused = [](const std::string& path, const std::string& reason) {
     return [=](const InputError& error) {
       const std::string message = error.what();
@@ -165,9 +130,9 @@ BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_refused_by_name_and_reason) {
   for (const auto& read : {+[](const std::string& path) { springstab::read_text_file(path); },
                            +[](const std::string& path) { read_obj(path); },
                            +[](const std::string& path) { read_matrix(path); }}) {
-    BOOST_CHECK_EXCEPTION(read(missing.name()), InputError, refused(missing.name(), "No such file"));
-    BOOST_CHECK_EXCEPTION(read(directory.name()), InputError, refused(directory.name(), "Is a directory"));
-    BOOST_CHECK_EXCEPTION(read(empty.name()), InputError, refused(empty.name(), "empty"));
+    BOOST_CHECK_EXCEPTION(read(missing), InputError, refused(missing, "No such file"));
+    BOOST_CHECK_EXCEPTION(read(directory), InputError, refused(directory, "Is a directory"));
+    BOOST_CHECK_EXCEPTION(read(empty), InputError, refused(empty, "empty"));
   }
 }
 
@@ -187,7 +152,8 @@ BOOST_AUTO_TEST_CASE(an_obj_file_gives_its_vertices_faces_and_lines) {
       "v 7 8 9\n"
       "f -4/-1/-1 2 4";
   for (const std::string& variant : {text, with_crlf(text), "\xEF\xBB\xBF" + text}) {
-    const Mesh mesh = obj(variant);
+    const ScratchFile file(variant);
+    const Mesh mesh = read_obj(file.name());
     BOOST_REQUIRE(mesh.vertices.size() == 4U);
     BOOST_TEST((mesh.vertices[0] == Eigen::Vector3d(0, 1, -0.25)));
     BOOST_TEST((mesh.vertices[1] == Eigen::Vector3d(1, 2, 3)));
@@ -198,7 +164,7 @@ BOOST_AUTO_TEST_CASE(an_obj_file_gives_its_vertices_faces_and_lines) {
                boost::test_tools::per_element());
     BOOST_TEST(mesh.vertex_line == (std::vector<long>{5, 6, 7, 14}), boost::test_tools::per_element());
     BOOST_TEST(mesh.face_line == (std::vector<long>{4, 12, 15}), boost::test_tools::per_element());
-    BOOST_TEST(mesh.source.find("springstab_readers_") != mesh.source.npos);
+    BOOST_TEST(mesh.source == file.name());
   }
 }
 
@@ -699,7 +665,7 @@ BOOST_AUTO_TEST_CASE(every_beginning_of_every_seed_reads_or_is_refused_with_a_li
     for (const auto& seed :
          std::filesystem::directory_iterator(SPRINGSTAB_SOURCE_DIR "/tests/fuzz/corpus/" + reader.name)) {
       BOOST_TEST_CONTEXT(seed.path()) {
-        const std::string text = contents(seed.path());
+        const std::string text = content_of(seed.path());
         for (std::size_t length = 0; length < text.size(); ++length)
           BOOST_REQUIRE_NO_THROW(++(reads(reader, text.substr(0, length)) ? read : refused));
         const bool whole = reads(reader, text);

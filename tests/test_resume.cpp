@@ -20,7 +20,7 @@
 #include <sstream>
 #include <thread>
 
-#include "experiments/journal.h"
+#include "experiments/runs/journal.h"
 #include "solvers/io/input_error.h"
 #include "tests/results.h"
 #include "tests/scratch.h"

@@ -1,6 +1,5 @@
 // The laws of springs and of the scene that sums them: forces are differenced energies, K and D differenced
 // forces; and what pendulums, chains and falling particles are known to do.
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
@@ -11,13 +10,19 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
+#include "solvers/linear/dense_solvers.h"
+#include "solvers/linear/structural_matrices.h"
+#include "solvers/methods/rk4.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"
 #include "solvers/stepper.h"
+#include "tests/dense.h"
 
 BOOST_AUTO_TEST_SUITE(scene)
 
 using namespace springstab;
+using springstab::test::smallest_eigenvalue;
 
 namespace {
 
@@ -113,9 +118,7 @@ void for_each_pose(const std::function<void(const SpringNet&, const Pose&, Rando
 }
 
 Vector mass_vector(const BlockLinearSystem& linear) {
-  Vector m(linear.size());
-  for (Eigen::Index i = 0; i < m.size(); ++i) m[i] = linear.mass()[i / 3];
-  return m;
+  return springstab::lumped_mass(linear.mass()).diagonal();
 }
 
 /// M a [N].
@@ -144,10 +147,6 @@ void check_equal(const Dense& found, const Dense& expected, double relative) {
   BOOST_REQUIRE_EQUAL(found.cols(), expected.cols());
   BOOST_TEST((found - expected).norm() <= relative * expected.norm(),
              "relative difference " << (found - expected).norm() / expected.norm());
-}
-
-double smallest_eigenvalue(const Dense& a) {
-  return Eigen::SelfAdjointEigenSolver<Dense>(a).eigenvalues()[0];
 }
 
 /// One particle on one spring to the origin: a pendulum of length l hanging in gravity along -y.
@@ -427,7 +426,7 @@ BOOST_AUTO_TEST_CASE(a_scene_without_linearizations_has_no_matrix) {
   Scene scene(net, some_pins, {0, -9.81, 0}, {0.1, 1e-3});
   State<Vector> state = scene.rest_state();
   state.v.setConstant(0.1);
-  const auto explicit_method = make_stepper("rk4");
+  const auto explicit_method = Method("rk4").stepper();
   BOOST_REQUIRE((explicit_method->step(scene, 1e-4, state) == StepStatus::done));
   scene.set_damping({0.2, 2e-3});
   BOOST_TEST(scene.kinetic_energy(state.v) > 0);
@@ -483,11 +482,11 @@ BOOST_AUTO_TEST_CASE(two_particles_in_one_place_make_a_step_diverge_and_leave_th
   Random random(7);
   const SpringNet net = random_net(random);
   Scene scene(net, {}, {0, 0, 0}, {});
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> state = scene.rest_state();
       state.x.segment<3>(0) = state.x.segment<3>(9);
       const Vector before = state.x;
-      BOOST_TEST((make_stepper(method.name)->step(scene, 1e-3, state) == StepStatus::diverged));
+      BOOST_TEST((method.stepper()->step(scene, 1e-3, state) == StepStatus::diverged));
       BOOST_TEST((state.x == before));
       BOOST_TEST(state.v.isZero(0));
     }
@@ -503,17 +502,113 @@ BOOST_AUTO_TEST_CASE(an_unconnected_particle_falls_as_each_method_must_have_it) 
   Scene scene(net, {1}, g, {});
   const double h = 0.01;
   const int n = 200;
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> state = scene.rest_state();
       state.v << 3, 1, -2;
       const State<Vector> start = state;
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       for (int i = 0; i < n; ++i) BOOST_REQUIRE((stepper->step(scene, h, state) == StepStatus::done));
-      const int c = method.order >= 2 ? 0 : method.implicit ? 1 : -1;
+      const int c = method.info().order >= 2 ? 0 : method.info().implicit ? 1 : -1;
       const Vector fallen = start.x + n * h * start.v + 0.5 * h * h * (n * n + c * n) * g;
       check_equal(state.x, fallen, n * eps);
       check_equal(state.v, start.v + n * h * g, n * eps);
     }
+}
+
+// A term as a user writes one: one particle is held to a point of space by E = ½ k |d|² + ¼ q |d|⁴, so that
+// K = (k + q |d|²) 1 + 2 q d dᵀ.
+class Anchor final : public ElasticTerm {
+ public:
+  Anchor(int particle, const Vector3d& point, double k, double q)
+      : particle_(particle), point_(point), k_(k), q_(q) {}
+  std::string_view name() const override { return "anchors"; }
+  int size() const override { return 1; }
+  double energy(const ParticleField& x) const override {
+    const double s = offset(x).squaredNorm();
+    return k_ * s / 2 + q_ * s * s / 4;
+  }
+  void add_force(const ParticleField& x, double* force) const override {
+    const Vector3d d = offset(x);
+    at(force) -= (k_ + q_ * d.squaredNorm()) * d;
+  }
+  void add_stiffness_times(const ParticleField& x, const double* u, double scale,
+                           double* out) const override {
+    at(out) += scale * (hessian(x) * Eigen::Map<const Vector3d>(u + 3 * particle_));
+  }
+  Couplings couplings() const override { return {}; }  // the diagonal is always there
+  void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override {
+    Eigen::Map<Eigen::Matrix3d>(stiffness.block(stiffness.diagonal(particle_))) += hessian(x);
+  }
+  void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override {
+    add_stiffness(x, stiffness);  // it is positive semidefinite everywhere
+  }
+
+ private:
+  Vector3d offset(const ParticleField& x) const { return Eigen::Map<const Vector3d>(x[particle_]) - point_; }
+  Eigen::Matrix3d hessian(const ParticleField& x) const {
+    const Vector3d d = offset(x);
+    return (k_ + q_ * d.squaredNorm()) * Eigen::Matrix3d::Identity() + 2 * q_ * d * d.transpose();
+  }
+  Eigen::Map<Vector3d> at(double* field) const { return Eigen::Map<Vector3d>(field + 3 * particle_); }
+
+  int particle_;
+  Vector3d point_;
+  double k_, q_;
+};
+
+TermMaker anchor(int particle, const Vector3d& point, double k, double q) {
+  return [=](const std::vector<int>& number, int) {
+    SceneTerms terms;
+    terms.elastic.push_back(std::make_unique<Anchor>(number[particle], point, k, q));
+    return terms;
+  };
+}
+
+BOOST_AUTO_TEST_CASE(a_users_term_acts_beside_those_of_a_net) {
+  for_each_pose([](const SpringNet& net, const Pose& pose, Random& random) {
+    const RayleighDamping damping{0.3, 0.02};
+    Scene without(net, some_pins, Vector3d::Zero(), damping), with(net, some_pins, Vector3d::Zero(), damping);
+    with.add(anchor(5, Vector3d(0.4, -0.3, 0.2), 30, 70));
+    const Vector x = take(with, pose, some_pins), v = random.vector(x.size(), 1);
+    take(without, pose, some_pins);
+    BOOST_TEST(with.terms().elastic.size() == without.terms().elastic.size() + 1);
+
+    const Dense added = stiffness(with, x) - stiffness(without, x);
+    const auto more_force = [&](const Vector& at) {
+      return Vector(force(with, at, 0 * v) - force(without, at, 0 * v));
+    };
+    const auto more_energy = [&](const Vector& at) {
+      return Vector::Constant(1, with.elastic_energy(at) - without.elastic_energy(at));
+    };
+    BOOST_TEST(added.norm() > 10);
+    const Vector gradient = differenced(more_energy, x, 1e-4).transpose();
+    BOOST_TEST((more_force(x) + gradient).norm() <= 1e-5 * (1 + gradient.norm()));
+    check_equal(added, -differenced(more_force, x, 1e-4), 1e-5);
+    // Rayleigh damping resists with the term's stiffness, too.
+    const Vector damped = force(with, x, v) - force(without, x, v) - more_force(x);
+    check_equal(damped, Vector(-damping.alpha * (added * v)), 1e-9);
+  });
+}
+
+BOOST_AUTO_TEST_CASE(a_scene_of_users_terms_alone_moves_as_they_say) {
+  const double k = 12, m = 0.4;
+  const Vector3d point(0.1, 0.2, -0.3);
+  Scene scene({{0.5, 0.2, -0.3}, {3, 0, 0}}, {m, 1}, anchor(0, point, k, 0), {1}, Vector3d::Zero(), {});
+  BOOST_TEST(scene.size() == 3);
+  BOOST_TEST(stiffness(scene, scene.rest_state().x)(1, 1) == k);
+  State<Vector> state = scene.rest_state();
+  const double period = 2 * pi * std::sqrt(m / k);
+  const auto stepper = make_stepper(Rk4());
+  for (int i = 0; i < 250; ++i)
+    BOOST_REQUIRE((stepper->step(scene, period / 1000, state) == StepStatus::done));
+  BOOST_TEST((state.x - point).norm() <= 1e-8);  // after a quarter of a period
+  BOOST_TEST(state.v[0] == -0.4 * std::sqrt(k / m), tolerance(1e-8));
+
+  BOOST_CHECK_THROW(scene.add(anchor(0, point, 1, 0)), std::invalid_argument);  // it has matrices
+  for (const double bad : {0.0, -1.0, double{NAN}, double{INFINITY}})
+    BOOST_CHECK_THROW(Scene({{0, 0, 0}}, {bad}, anchor(0, point, 1, 0), {}, point, {}),
+                      std::invalid_argument);
+  BOOST_CHECK_THROW(Scene({{0, 0, 0}}, {1, 1}, anchor(0, point, 1, 0), {}, point, {}), std::invalid_argument);
 }
 
 // v' = g - d0 v; g/d0 is a fixed point of every method, approached by |R(-0.5)| <= 2/3 a step.
@@ -524,10 +619,10 @@ BOOST_AUTO_TEST_CASE(air_drag_ends_in_the_terminal_velocity) {
   const Vector g{{0.5, -9.81, 1}};
   const double d0 = 0.7;
   Scene scene(net, {}, g, {d0, 0.4});
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> state = scene.rest_state();
       state.v << 100, 50, -20;
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       for (int i = 0; i < 100; ++i)
         BOOST_REQUIRE((stepper->step(scene, 0.5 / d0, state) == StepStatus::done));
       // Implicit Euler leaves the tolerance of its solve, of a change that itself vanishes.
@@ -546,7 +641,7 @@ BOOST_AUTO_TEST_CASE(a_pendulum_swings_with_the_period_of_the_elliptic_integral)
       {30, 1.01740879759596}, {90, 1.1803405990161}, {150, 1.76220372950376}};
   for (const auto& [degrees, ratio] : known) BOOST_TEST_CONTEXT(degrees << " degrees") {
       State<Vector> state = pendulum.at(degrees * pi / 180);
-      const auto stepper = make_stepper("rk4");
+      const auto stepper = Method("rk4").stepper();
       double t = 0, above = 0;
       while (state.x[0] > 0 && t < t0) {
         above = state.x[0];

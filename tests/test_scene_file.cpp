@@ -1,58 +1,37 @@
 // The laws of a scene file: what is written arrives, what is absent has its default, what is wrong is refused
 // with its line.
-#include <unistd.h>
-
 #include <boost/test/unit_test.hpp>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 
-#include "experiments/input/scene_description.h"
+#include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
+#include "tests/refusals.h"
+#include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(scene_file)
 
 using namespace springstab;
+using springstab::test::expect_error;
 
 namespace {
 
 /// A folder with one scene file, gone at the end.
 class SceneFile {
  public:
-  explicit SceneFile(const std::string& text) {
-    std::filesystem::create_directory(folder_);
-    std::ofstream(path(), std::ios::binary) << text;
-  }
-  ~SceneFile() { std::filesystem::remove_all(folder_); }
-  SceneFile(const SceneFile&) = delete;
-  SceneFile& operator=(const SceneFile&) = delete;
+  explicit SceneFile(const std::string& text) : path_(folder_.file("scene.json", text)) {}
 
-  std::string path() const { return (folder_ / "scene.json").string(); }
-  std::string folder() const { return folder_.string(); }
+  std::string path() const { return path_; }
+  std::string folder() const { return folder_.path(); }
 
  private:
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("springstab_scene_" + std::to_string(getpid()));
+  test::ScratchFolder folder_;
+  std::string path_;
 };
 
 SceneDescription read(const std::string& text) { return read_scene_file(SceneFile(text).path()); }
 
 /// What follows the geometry of an otherwise complete scene, from line 2 on.
 std::string with(const std::string& rest) { return "{\"geometry\": {\"grid\": [3, 4]},\n" + rest + "}\n"; }
-
-/// Checks that the action throws InputError with this place and these words, in one line.
-void expect_error(const std::function<void()>& action, const std::string& place, const std::string& words) {
-  try {
-    action();
-    BOOST_ERROR("nothing was thrown, expected \"" + words + '"');
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    BOOST_TEST(what.starts_with(place + ": "), what << " does not start with " << place);
-    BOOST_TEST(what.find(words) != std::string::npos, what << " does not say " << words);
-    BOOST_TEST(what.find("expected") != std::string::npos, what << " does not say what was expected");
-    BOOST_TEST(what.find('\n') == std::string::npos, what << " is more than one line");
-  }
-}
 
 void expect_refused(const std::string& text, long line, const std::string& words) {
   const SceneFile file(text);

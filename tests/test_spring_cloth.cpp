@@ -3,36 +3,24 @@
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <set>
 
 #include "solvers/io/input_error.h"
 #include "solvers/scene/spring_cloth.h"
+#include "tests/meshes.h"
+#include "tests/refusals.h"
 
 BOOST_AUTO_TEST_SUITE(spring_cloth)
 
 using namespace springstab;
+using springstab::test::expect_error;
+using springstab::test::make_mesh;
 
 namespace {
 
 using IndexPair = std::pair<int, int>;
-
-/// A mesh whose vertex v stands on line v + 1 of the file and whose faces follow.
-Mesh make_mesh(std::vector<Eigen::Vector3d> vertices, const std::vector<std::vector<int>>& faces) {
-  Mesh mesh;
-  mesh.source = "cloth.obj";
-  mesh.vertices = std::move(vertices);
-  mesh.vertex_line.resize(mesh.vertices.size());
-  std::iota(mesh.vertex_line.begin(), mesh.vertex_line.end(), 1L);
-  for (const auto& face : faces) {
-    mesh.face_vertices.insert(mesh.face_vertices.end(), face.begin(), face.end());
-    mesh.face_offsets.push_back(static_cast<int>(mesh.face_vertices.size()));
-    mesh.face_line.push_back(static_cast<long>(mesh.vertices.size() + mesh.face_line.size() + 1));
-  }
-  return mesh;
-}
 
 /// The grid's cells as quads, some the other way round than a neighbour and each with another first corner.
 Mesh quad_mesh(const Grid& grid) {
@@ -64,19 +52,6 @@ std::set<IndexPair> pairs(const SpringNet& net) {
   for (const Spring& s : net.springs) pairs.emplace(s.i, s.j);
   BOOST_TEST(pairs.size() == net.springs.size(), "a pair has two springs");
   return pairs;
-}
-
-/// Checks that the action throws InputError and that its message starts with the place and holds the words.
-void expect_error(const std::function<void()>& action, const std::string& place, const std::string& words) {
-  try {
-    action();
-    BOOST_ERROR("nothing was thrown, expected \"" + words + '"');
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    BOOST_TEST(what.starts_with(place + ": "), what << " does not start with " << place);
-    BOOST_TEST(what.find(words) != std::string::npos, what << " does not say " << words);
-    BOOST_TEST(what.find("expected") != std::string::npos, what << " does not say what was expected");
-  }
 }
 
 const double inf = std::numeric_limits<double>::infinity();

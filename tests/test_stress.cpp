@@ -2,10 +2,11 @@
 // is noticed.
 #include <boost/test/unit_test.hpp>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
-#include "experiments/stress/stress.h"
+#include "analysis/method.h"
+#include "experiments/studies/stress/stress.h"
+#include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(stress)
 
@@ -41,12 +42,12 @@ BOOST_AUTO_TEST_CASE(cheap_cases_come_out_as_expected) {
 
 // An expectation that fails is told; and what the error is measured by: half the time unit is another motion.
 BOOST_AUTO_TEST_CASE(a_wrong_expectation_is_noticed) {
-  const std::string folder = std::filesystem::temp_directory_path();
+  const test::ScratchFolder folder;
   for (StressCase c : stress_catalogue()) {
     if (c.name != "k = 1") continue;
     c.expected = {StressOutcome::refused};
     std::optional<StiffestMode> k0;
-    const StressResult result = run_stress(c, "rk4", folder, quiet, k0);
+    const StressResult result = run_stress(c, "rk4", folder.path(), quiet, k0);
     BOOST_TEST(!result.as_expected());
     BOOST_TEST((result.outcome == StressOutcome::right));
     BOOST_REQUIRE(result.error);

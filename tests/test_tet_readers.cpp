@@ -1,10 +1,7 @@
 // The readers of tetrahedral meshes: one mesh is the same in every format, what is not needed is skipped, and
 // what is not exactly right is refused with its line.
 #include <boost/test/unit_test.hpp>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <random>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -16,10 +13,14 @@
 #include "solvers/io/vtk.h"
 #include "tests/scratch.h"
 #include "tests/shared_data.h"
+#include "tests/texts.h"
 
 BOOST_AUTO_TEST_SUITE(tet_readers)
 
 using namespace springstab;
+using springstab::test::replaced;
+using springstab::test::with_crlf;
+using springstab::test::with_line_ends;
 
 namespace {
 
@@ -87,18 +88,6 @@ const struct {
                {"vega", parse_vega, vega, {13, 14}},
                {"vtk 2", parse_vtk, vtk_2, {15, 16}},
                {"vtk 5", parse_vtk, vtk_5, {18, 18}}};
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const std::size_t at = text.find(what);
-  BOOST_REQUIRE(at != text.npos);
-  return text.replace(at, what.size(), by);
-}
-
-std::string with_line_ends(const std::string& text, const std::string& end) {
-  std::string changed;
-  for (const char c : text) changed += c == '\n' ? end : std::string(1, c);
-  return changed;
-}
 
 void check_mesh(const AnyMesh& any) {
   const TetMesh& mesh = std::get<TetMesh>(any);

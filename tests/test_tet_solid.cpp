@@ -12,18 +12,23 @@
 #include <set>
 #include <vector>
 
-#include "analysis/spectrum.h"
+#include "analysis/method.h"
+#include "analysis/spectra/spectrum.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/mesh_file.h"
+#include "solvers/linear/dense_solvers.h"
 #include "solvers/scene/mesh_repair.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/tet_solid.h"
-#include "solvers/stepper.h"
+#include "tests/dense.h"
+#include "tests/refusals.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(tet_solid)
 
 using namespace springstab;
+using springstab::test::expect_error;
+using springstab::test::smallest_eigenvalue;
 
 namespace {
 
@@ -200,10 +205,6 @@ void check_equal(const Dense& found, const Dense& expected, double relative) {
              "relative difference " << (found - expected).norm() / expected.norm());
 }
 
-double smallest_eigenvalue(const Dense& a) {
-  return Eigen::SelfAdjointEigenSolver<Dense>(a).eigenvalues()[0];
-}
-
 /// K and M of the whole solid at rest, spring by spring: both kinds store ½ k (∇·δx)² there.
 std::pair<Dense, Vector> dense_matrices(const TetSolid& solid) {
   const Eigen::Index n = 3 * static_cast<Eigen::Index>(solid.rest.size());
@@ -232,27 +233,15 @@ std::pair<Dense, Vector> dense_matrices(const TetSolid& solid) {
     g.segment<3>(3 * s) = -weight[2] * normal;
     k += solid.material.stiffness.altitude * g * g.transpose();
   }
-  Vector mass(n);
-  for (Eigen::Index i = 0; i < n; ++i) mass[i] = solid.mass[i / 3];
-  return {k, mass};
+  return {k, springstab::lumped_mass(solid.mass).diagonal()};
 }
 
 double dense_k0(const TetSolid& solid) {
   const auto [k, mass] = dense_matrices(solid);
   const Vector root = mass.cwiseSqrt().cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<Dense>(root.asDiagonal() * k * root.asDiagonal())
+  return Eigen::SelfAdjointEigenSolver<Dense>(Dense(root.asDiagonal() * k * root.asDiagonal()))
       .eigenvalues()
       .maxCoeff();
-}
-
-void expect_error(const std::function<void()>& action, const std::string& place, const std::string& words) {
-  BOOST_CHECK_EXCEPTION(action(), InputError, [&](const InputError& error) {
-    const std::string text = error.what();
-    const bool good =
-        text.starts_with(place + ": ") && text.find(words) != text.npos && text.find("expected") != text.npos;
-    if (!good) BOOST_TEST_MESSAGE("\"" << text << "\" for " << place << ", " << words);
-    return good;
-  });
 }
 
 }  // namespace
@@ -450,7 +439,7 @@ BOOST_AUTO_TEST_CASE(an_inverted_solid_recovers) {
         return now.six_volumes(0);
       };
       BOOST_TEST(volume() == -1, boost::test_tools::tolerance(1e-12));
-      const auto stepper = make_stepper(method);
+      const auto stepper = Method(method).stepper();
       for (int i = 0; i < 20000; ++i) BOOST_REQUIRE((stepper->step(scene, 1e-3, state) == StepStatus::done));
       BOOST_TEST(volume() == 1, boost::test_tools::tolerance(1e-6));
       BOOST_TEST(scene.elastic_energy(state.x) < 1e-9);
@@ -462,7 +451,7 @@ BOOST_AUTO_TEST_CASE(a_collapsed_face_has_no_force_and_the_step_says_so) {
   State<Vector> state = scene.rest_state();
   state.x.segment<3>(6) = (state.x.segment<3>(3) + state.x.segment<3>(9)) / 2;
   const State<Vector> before = state;
-  BOOST_TEST((make_stepper("rk4")->step(scene, 1e-3, state) == StepStatus::diverged));
+  BOOST_TEST((Method("rk4").stepper()->step(scene, 1e-3, state) == StepStatus::diverged));
   BOOST_TEST((state.x == before.x));
 }
 
@@ -482,9 +471,7 @@ BOOST_AUTO_TEST_CASE(k0_is_that_of_a_dense_eigen_solver) {
       BlockLinearSystem& linear = scene.linearized(rest.x, rest.v);
       StructuralMatrices s;
       s.stiffness = linear.stiffness().to_sparse();
-      Vector mass(scene.size());
-      for (Eigen::Index i = 0; i < mass.size(); ++i) mass[i] = linear.mass()[i / 3];
-      s.mass = SparseMatrix(mass.asDiagonal());
+      s.mass = springstab::lumped_mass(linear.mass());
       const StiffestMode k0 = stiffest_mode(s, {});
       const double expected = dense_k0(solid);
       BOOST_TEST_MESSAGE(name << ": k0 " << k0.value << ", dense " << expected);

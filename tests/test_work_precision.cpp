@@ -1,30 +1,29 @@
 // Error against run time: the references are right and as precise as they say, orders show, costs are
 // counted.
-#include <unistd.h>
-
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <random>
 #include <span>
-#include <sstream>
 #include <string>
 
-#include "analysis/adaptive_integrator.h"
-#include "analysis/linear_motion.h"
-#include "experiments/precision/contest.h"
-#include "experiments/precision/contest_figure.h"
-#include "experiments/precision/long_runs.h"
-#include "experiments/precision/scenes.h"
+#include "analysis/errors/linear_motion.h"
+#include "analysis/gsl/adaptive_integrator.h"
+#include "analysis/method.h"
+#include "experiments/studies/precision/contest.h"
+#include "experiments/studies/precision/contest_figure.h"
+#include "experiments/studies/precision/long_runs.h"
+#include "experiments/studies/precision/scenes.h"
 #include "solvers/io/input_error.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/spring_chain.h"
-#include "solvers/stepper.h"
+#include "tests/dense.h"
+#include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(work_precision)
 
 using namespace springstab;
+using springstab::test::random_vector;
 namespace fs = std::filesystem;
 
 namespace {
@@ -32,14 +31,6 @@ namespace {
 using boost::test_tools::tolerance;
 
 const CommonOptions quiet{.quiet = true};
-
-Vector random_vector(Eigen::Index size, unsigned seed) {
-  std::mt19937_64 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Vector u(size);
-  for (double& entry : u) entry = uniform(engine);
-  return u;
-}
 
 /// Masses and springs of all sizes.
 SpringChain uneven_chain(RayleighDamping damping = {0.3, 0.02}) {
@@ -60,19 +51,12 @@ SceneDescription hung_cloth(double alpha = 1e-3) {
 
 Problem small_chain() {
   const double k = 400;
-  return {"small chain", SpringChain({1, 2, 1}, {k, 2 * k, k, k}, {0, 0}), Vector::Ones(3), 1, quiet};
+  return {"small chain", Model(SpringChain({1, 2, 1}, {k, 2 * k, k, k}, {0, 0}), Vector::Ones(3)), 1, quiet};
 }
 
 double gap(const State<Vector>& a, const State<Vector>& b) {
   return std::max((a.x - b.x).cwiseAbs().maxCoeff(), (a.v - b.v).cwiseAbs().maxCoeff());
 }
-
-/// A folder that is removed at the end.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("springstab precision " + std::to_string(getpid()));
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-};
 
 }  // namespace
 
@@ -92,14 +76,14 @@ BOOST_AUTO_TEST_CASE(a_chain_does_what_its_matrices_do) {
   chain.acceleration(x, v, a), matrices.acceleration(x, v, b), check_same(a, b);
   chain.stiffness_times(x, a), matrices.stiffness_times(x, b), check_same(a, b);
   chain.damping_times(x, a), matrices.damping_times(x, b), check_same(a, b);
-  for (double h : {0.1, 3.}) {
-    BOOST_TEST((chain.solve_shifted(h, x, a).status == StepStatus::done));
-    matrices.solve_shifted(h, x, b), check_same(a, b);
+  for (const Shift& shift : {Shift{1, 0.1, 0.01}, Shift{1, 3, 9}, Shift{2, 3, 9}, Shift{2, 0.7, 9}}) {
+    BOOST_TEST((chain.solve_shifted(shift, x, a).status == StepStatus::done));
+    matrices.solve_shifted(shift, x, b), check_same(a, b);
   }
   chain.set_damping({0, 0.5});  // what was factorized before does not count any more
   s.damping = 0.5 * s.stiffness;
   MatrixSystem damped(s);
-  chain.solve_shifted(3, x, a), damped.solve_shifted(3, x, b), check_same(a, b);
+  chain.solve_shifted({1, 3, 3 * 3}, x, a), damped.solve_shifted({1, 3, 3 * 3}, x, b), check_same(a, b);
   BOOST_TEST(chain.kinetic_energy(v) == matrices.kinetic_energy(v), tolerance(1e-14));
   BOOST_TEST(chain.potential_energy(x) == matrices.potential_energy(x), tolerance(1e-14));
 }
@@ -259,26 +243,26 @@ BOOST_AUTO_TEST_CASE(both_kinds_of_reference_agree) {
 }
 
 BOOST_AUTO_TEST_CASE(a_reference_is_kept_under_what_the_problem_does) {
-  Folder folder;
+  const test::ScratchFolder folder;
   Problem problem = small_chain();
-  const Reference first = reference_motion(problem, folder.path);
-  const fs::path file = folder.path / fingerprint(problem);
+  const Reference first = reference_motion(problem, folder.path());
+  const fs::path file = folder.path() / fingerprint(problem);
   BOOST_REQUIRE(fs::exists(file));
   const auto written = fs::last_write_time(file);
-  const Reference second = reference_motion(problem, folder.path);
+  const Reference second = reference_motion(problem, folder.path());
   BOOST_TEST(second.error.trajectory == first.error.trajectory);
   for (std::size_t i = 0; i < first.trajectory.size(); ++i)
     BOOST_TEST(gap(first.trajectory[i], second.trajectory[i]) == 0);
   BOOST_CHECK(fs::last_write_time(file) == written);
   fs::resize_file(file, fs::file_size(file) - 8);  // a spoilt one is computed again
-  const Reference third = reference_motion(problem, folder.path);
+  const Reference third = reference_motion(problem, folder.path());
   BOOST_TEST(gap(third.trajectory.back(), first.trajectory.back()) == 0);
 
   const std::string same = fingerprint(problem);
   BOOST_TEST(fingerprint(problem) == same);
   const double k = 400;
   const auto other = [&](SpringChain chain, double x, double duration) {
-    Problem changed("other", std::move(chain), Vector::Constant(3, x), duration, quiet);
+    Problem changed("other", Model(std::move(chain), Vector::Constant(3, x)), duration, quiet);
     return fingerprint(changed);
   };
   BOOST_TEST(other({{1, 2, 1}, {k, 2 * k, k, k}, {0, 0}}, 1, 1) == same);
@@ -293,17 +277,18 @@ BOOST_AUTO_TEST_CASE(a_reference_is_kept_under_what_the_problem_does) {
 
 // Errors of order p fall by 2^p when the step is halved: at the two finest steps above rounding.
 BOOST_AUTO_TEST_CASE(every_method_shows_its_order) {
-  Problem linear("chain", uneven_chain(), random_vector(5, 1), 1, quiet);
+  Problem linear("chain", Model(uneven_chain(), random_vector(5, 1)), 1, quiet);
   // Without alpha: linearized RK4 is of order 1 where the damping follows K(x).
   Problem cloth("cloth", Subject(hung_cloth(0)), 0.2, quiet);
   for (Problem* problem : {&linear, &cloth}) {
     const Reference reference = reference_motion(*problem, "");
     const std::vector<Contestant> contestants = method_contestants(*problem);
-    for (const MethodInfo& info : all_methods()) {
+    for (const Method& each : all_methods()) {
       // On a linear system the frozen one is the system itself.
-      const double order = info.linearized && problem->is_linear() && info.order == 2 ? 4 : info.order;
-      const bool iterates = info.implicit && problem->scene();
-      const std::string title = std::string(info.title) + (iterates ? " (CG 1e-08)" : "");
+      const double order =
+          each.info().linearized && problem->is_linear() && each.info().order == 2 ? 4 : each.info().order;
+      const bool iterates = each.info().implicit && problem->scene();
+      const std::string title = std::string(each.info().title) + (iterates ? " (CG 1e-08)" : "");
       const Contestant& contestant = *std::ranges::find(contestants, title, &Contestant::name);
       std::vector<double> orders;
       double coarse = 0;
@@ -315,9 +300,9 @@ BOOST_AUTO_TEST_CASE(every_method_shows_its_order) {
         if (coarse > 0) orders.push_back(std::log2(coarse / fine));
         coarse = fine;
       }
-      BOOST_TEST_REQUIRE(orders.size() >= 2u, info.name << " has too few runs");
+      BOOST_TEST_REQUIRE(orders.size() >= 2u, each.name() << " has too few runs");
       for (double found : {orders[orders.size() - 2], orders.back()})
-        BOOST_TEST_CONTEXT(info.name << " on the " << problem->title()) {
+        BOOST_TEST_CONTEXT(each.name() << " on the " << problem->title()) {
           BOOST_TEST(found > order - 0.3);
           BOOST_TEST(found < order + 0.4);
         }
@@ -327,10 +312,10 @@ BOOST_AUTO_TEST_CASE(every_method_shows_its_order) {
 
 // Over thousands of steps 1.02 of a limit grows past any bound.
 BOOST_AUTO_TEST_CASE(steps_straddle_the_limit_and_divergence_is_kept) {
-  Problem problem("chain", uneven_chain(), random_vector(5, 1), 2000, quiet);
+  Problem problem("chain", Model(uneven_chain(), random_vector(5, 1)), 2000, quiet);
   const std::vector<Contestant> contestants = method_contestants(problem);
-  for (const MethodInfo& info : all_methods()) {
-    const Contestant& c = *std::ranges::find(contestants, info.title, &Contestant::name);
+  for (const Method& each : all_methods()) {
+    const Contestant& c = *std::ranges::find(contestants, each.info().title, &Contestant::name);
     BOOST_REQUIRE(c.limit);
     for (double h : c.settings) {
       const double steps = problem.duration() / h;
@@ -342,7 +327,7 @@ BOOST_AUTO_TEST_CASE(steps_straddle_the_limit_and_divergence_is_kept) {
     BOOST_TEST(c.settings[1] < 0.991 * *c.limit);
     BOOST_TEST(c.settings[1] > 0.8 * *c.limit);
     const Attempt above = c.attempt(c.settings[0], 10), below = c.attempt(c.settings[1], 10);
-    BOOST_TEST_CONTEXT(info.name) {
+    BOOST_TEST_CONTEXT(each.name()) {
       BOOST_CHECK(below.outcome == Outcome::finished);
       BOOST_TEST(below.trajectory.size() == trajectory_samples + 1u);
       BOOST_CHECK(above.outcome == Outcome::diverged);
@@ -369,7 +354,7 @@ BOOST_AUTO_TEST_CASE(a_plain_rk4_is_precise_at_its_limit_on_the_uniform_chain) {
   BOOST_REQUIRE(run.trajectory.size() == trajectory_samples + 1u);
   BOOST_TEST(run.counts.force_evaluations == 4 * run.steps);
   Trajectory reference{problem.start()};
-  const LinearMotion motion(problem.structure(), problem.damping().d0, problem.damping().alpha,
+  const LinearMotion motion(problem.matrices(), problem.damping().d0, problem.damping().alpha,
                             problem.start());
   for (int i = 1; i <= trajectory_samples; ++i) reference.push_back(motion.at(i / 16.));
   const Errors errors = errors_of(problem.system(), run.trajectory, reference);
@@ -382,11 +367,10 @@ BOOST_AUTO_TEST_CASE(a_plain_rk4_is_precise_at_its_limit_on_the_uniform_chain) {
 }
 
 BOOST_AUTO_TEST_CASE(every_row_of_the_file_is_whole_and_nothing_is_not_a_number) {
-  Folder folder;
-  fs::create_directories(folder.path);
+  const test::ScratchFolder folder;
   Problem problem = small_chain();
   const ContestResult result = run_contest(problem, "", {.time_limit = 0.02, .repetitions = 5}, quiet);
-  const std::string path = folder.path / "runs.csv";
+  const std::string path = folder.path() / "runs.csv";
   write_runs(path, result);
   std::ifstream file(path);
   std::string line;

@@ -9,9 +9,8 @@
 namespace springstab {
 namespace {
 
-using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-using BlockAt = Eigen::Map<Block>;
-using ConstBlockAt = Eigen::Map<const Block>;
+using BlockAt = Eigen::Map<Block3>;
+using ConstBlockAt = Eigen::Map<const Block3>;
 using WideBlock = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;  // the last column zero
 
 // Every block (i, j), i >= j, of the two matrices together, some twice.
@@ -137,7 +136,7 @@ bool BlockCholesky::factorize(double m, const std::vector<double>& mass, double 
     stiffness_.add(k, k_factor, stiffness, column_);
     if (damping) damping_.add(k, c, *damping, column_);
     Eigen::Map<WideBlock> diagonal(&column_[12 * static_cast<long>(k)]);
-    Block pivot = diagonal.leftCols<3>();
+    Block3 pivot = diagonal.leftCols<3>();
     pivot.diagonal().array() += m * mass[order_[k]];
     diagonal.setZero();
 
@@ -154,15 +153,15 @@ bool BlockCholesky::factorize(double m, const std::vector<double>& mass, double 
         for (int r = 0; r < 3; ++r)
           FourAt{to + 4 * r} -= l[3 * r] * z0 + l[3 * r + 1] * z1 + l[3 * r + 2] * z2;
       }
-      const Block l_ki = z.leftCols<3>().transpose();
+      const Block3 l_ki = z.leftCols<3>().transpose();
       pivot.noalias() -= l_ki * l_ki.transpose();
       BlockAt{&value_[9 * end_[i]]} = l_ki;
       row_[end_[i]++] = k;
     });
 
-    const Eigen::LLT<Block> cholesky(pivot);
+    const Eigen::LLT<Block3> cholesky(pivot);
     if (cholesky.info() != Eigen::Success) return false;
-    BlockAt{&inverse_pivot_[9 * static_cast<long>(k)]} = cholesky.matrixL().solve(Block::Identity());
+    BlockAt{&inverse_pivot_[9 * static_cast<long>(k)]} = cholesky.matrixL().solve(Block3::Identity());
   }
   return true;
 }

@@ -3,11 +3,6 @@
 #include <Eigen/Cholesky>
 
 namespace springstab {
-namespace {
-
-using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
-}  // namespace
 
 BlockLinearSystem::BlockLinearSystem(
     std::vector<double> mass, RayleighDamping damping,
@@ -55,37 +50,38 @@ bool BlockLinearSystem::invert_diagonal_blocks(double mass_factor, double stiffn
                                                double damping_factor) {
   inverse_blocks_.resize(9 * mass_.size());
   for (int i = 0; i < stiffness_.rows(); ++i) {
-    Block h = stiffness_factor * Eigen::Map<const Block>(stiffness_.block(stiffness_.diagonal(i)));
+    Block3 h = stiffness_factor * Eigen::Map<const Block3>(stiffness_.block(stiffness_.diagonal(i)));
     if (own_damping_)
-      h += damping_factor * Eigen::Map<const Block>(own_damping_->block(own_damping_->diagonal(i)));
+      h += damping_factor * Eigen::Map<const Block3>(own_damping_->block(own_damping_->diagonal(i)));
     h.diagonal().array() += mass_factor * mass_[i];
-    const Eigen::LLT<Block> factor(h);
+    const Eigen::LLT<Block3> factor(h);
     if (factor.info() != Eigen::Success) return false;
-    Eigen::Map<Block> inverse(&inverse_blocks_[9 * static_cast<long>(i)]);
-    inverse = factor.solve(Block::Identity());
+    Eigen::Map<Block3> inverse(&inverse_blocks_[9 * static_cast<long>(i)]);
+    inverse = factor.solve(Block3::Identity());
   }
   return true;
 }
 
-// M (1 + hD' + h²K') = (1 + h d0) M + (h alpha + h²) K + hC is symmetric.
-SolveReport BlockLinearSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
+// M (m + dD' + kK') = (m + d d0) M + (d alpha + k) K + dC is symmetric.
+SolveReport BlockLinearSystem::solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) {
   rhs_.resize(size());
   for (long i = 0; i < stiffness_.rows(); ++i) rhs_.segment<3>(3 * i) = mass_[i] * rhs.segment<3>(3 * i);
-  if (solver.kind == SolverKind::cholesky) return solve_by_cholesky(h, out);
-  return solver.preconditioner == Preconditioner::block_ssor ? solve_by_block_ssor(h, out)
-                                                             : solve_by_block_jacobi(h, out);
+  if (solver.kind == SolverKind::cholesky) return solve_by_cholesky(shift, out);
+  return solver.preconditioner == Preconditioner::block_ssor ? solve_by_block_ssor(shift, out)
+                                                             : solve_by_block_jacobi(shift, out);
 }
 
-SolveReport BlockLinearSystem::solve_by_cholesky(double h, Vector& out) {
-  if (!cholesky_.factorize(1 + h * damping_.d0, mass_, h * (damping_.alpha + h), stiffness_, h,
-                           own_damping()))
+SolveReport BlockLinearSystem::solve_by_cholesky(const Shift& shift, Vector& out) {
+  if (!cholesky_.factorize(shift.mass + shift.damping * damping_.d0, mass_,
+                           shift.of_stiffness(damping_.alpha), stiffness_, shift.damping, own_damping()))
     return {.status = StepStatus::not_positive_definite};
   cholesky_.solve(rhs_, out);
   return {.status = out.allFinite() ? StepStatus::done : StepStatus::diverged};
 }
 
-SolveReport BlockLinearSystem::solve_by_block_ssor(double h, Vector& out) {
-  if (!ssor_.set(1 + h * damping_.d0, mass_, h * (damping_.alpha + h), stiffness_, h, own_damping()))
+SolveReport BlockLinearSystem::solve_by_block_ssor(const Shift& shift, Vector& out) {
+  if (!ssor_.set(shift.mass + shift.damping * damping_.d0, mass_, shift.of_stiffness(damping_.alpha),
+                 stiffness_, shift.damping, own_damping()))
     return {.status = StepStatus::not_positive_definite};
   ssor_.transform(rhs_, transformed_rhs_);
   SolveReport report =
@@ -96,9 +92,10 @@ SolveReport BlockLinearSystem::solve_by_block_ssor(double h, Vector& out) {
   return report;
 }
 
-SolveReport BlockLinearSystem::solve_by_block_jacobi(double h, Vector& out) {
-  const double mass_factor = 1 + h * damping_.d0, stiffness_factor = h * (damping_.alpha + h);
-  if (!invert_diagonal_blocks(mass_factor, stiffness_factor, h))
+SolveReport BlockLinearSystem::solve_by_block_jacobi(const Shift& shift, Vector& out) {
+  const double mass_factor = shift.mass + shift.damping * damping_.d0,
+               stiffness_factor = shift.of_stiffness(damping_.alpha), damping_factor = shift.damping;
+  if (!invert_diagonal_blocks(mass_factor, stiffness_factor, damping_factor))
     return {.status = StepStatus::not_positive_definite};
   const auto apply = [&](const Vector& p, Vector& q) {
     q.resize(size());
@@ -110,7 +107,7 @@ SolveReport BlockLinearSystem::solve_by_block_jacobi(double h, Vector& out) {
     stiffness_.multiply_rows(p.data(), [&](long i, const Eigen::Vector3d& force) {
       const Eigen::Vector3d pi = p.segment<3>(3 * i);
       Eigen::Vector3d qi = stiffness_factor * force + mass_factor * mass_[i] * pi;
-      if (own_damping_) qi += h * product_.segment<3>(3 * i);
+      if (own_damping_) qi += damping_factor * product_.segment<3>(3 * i);
       q.segment<3>(3 * i) = qi;
       dot += pi.array() * qi.array();
     });
@@ -121,7 +118,7 @@ SolveReport BlockLinearSystem::solve_by_block_jacobi(double h, Vector& out) {
     Eigen::Array3d dot = Eigen::Array3d::Zero();
     for (long i = 0; i < stiffness_.rows(); ++i) {
       const Eigen::Vector3d ri = r.segment<3>(3 * i);
-      const Eigen::Vector3d zi = Eigen::Map<const Block>(&inverse_blocks_[9 * i]) * ri;
+      const Eigen::Vector3d zi = Eigen::Map<const Block3>(&inverse_blocks_[9 * i]) * ri;
       z.segment<3>(3 * i) = zi;
       dot += ri.array() * zi.array();
     }

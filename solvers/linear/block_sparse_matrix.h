@@ -15,6 +15,9 @@
 
 namespace springstab {
 
+/// A block as it is stored, row by row.
+using Block3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
 class BlockSparseMatrix {
  public:
   /// `rows` block rows, with the diagonal and what each coupling (i, j) has below it.

@@ -46,13 +46,12 @@ bool BlockSsor::set(double m, const std::vector<double>& mass, double k, const B
   if (row_start_.empty()) set_pattern(stiffness, damping);
   double* out = value_.data();
   for (int i = 0; i < rows(); ++i) {
-    using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    Block diagonal = k * Eigen::Map<const Block>(stiffness.block(stiffness.diagonal(i)));
-    if (damping) diagonal += c * Eigen::Map<const Block>(damping->block(damping->diagonal(i)));
+    Block3 diagonal = k * Eigen::Map<const Block3>(stiffness.block(stiffness.diagonal(i)));
+    if (damping) diagonal += c * Eigen::Map<const Block3>(damping->block(damping->diagonal(i)));
     diagonal.diagonal().array() += m * mass[i];
-    const Eigen::LLT<Block> cholesky(diagonal / relaxation);
+    const Eigen::LLT<Block3> cholesky(diagonal / relaxation);
     if (cholesky.info() != Eigen::Success) return false;
-    const Block inverse = cholesky.matrixL().solve(Block::Identity());
+    const Block3 inverse = cholesky.matrixL().solve(Block3::Identity());
     Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(&factor_[12 * static_cast<long>(i)])
         << inverse.transpose(),
         Eigen::Vector3d::Zero();

@@ -156,6 +156,12 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
 
 }  // namespace
 
+SparseMatrix lumped_mass(std::span<const double> mass) {
+  Eigen::VectorXd diagonal(3 * static_cast<Eigen::Index>(mass.size()));
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) diagonal[i] = mass[i / 3];
+  return SparseMatrix(diagonal.asDiagonal());
+}
+
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
   const SparseMatrix rows = d.asDiagonal() * a;
   return rows * d.asDiagonal();

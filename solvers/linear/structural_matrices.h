@@ -1,13 +1,14 @@
-// K, M and D of a structure as matrices, checked and made ready: symmetric, and without massless unknowns.
+// K, M and D of a structure as matrices, checked and made ready: finite, of one size, no unknown massless.
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <span>
 
 namespace springstab {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// M x'' = -K x - D v. An empty D (0 x 0) means none.
+/// M x'' = -K x - D v. D is all of the damping there is; an empty one (0 x 0) means none.
 struct StructuralMatrices {
   SparseMatrix stiffness, mass, damping;
   Eigen::Index condensed = 0;  // massless unknowns that were eliminated
@@ -17,8 +18,8 @@ struct StructuralMatrices {
   bool has_damping() const { return damping.nonZeros() > 0; }
 };
 
-/// Checks the matrices (square, of one size, finite, symmetric to 1e-10 of their largest entry; what is left
-/// of the asymmetry is averaged away) and eliminates unknowns whose row of M is zero: they follow the others,
+/// Checks the matrices (square, of one size, finite, a_ij and a_ji apart by at most 1e-10 of the larger or of
+/// √(a_ii a_jj); their mean replaces both) and eliminates unknowns whose row of M is zero: they follow,
 /// K ← K_aa - K_ab K_bb⁻¹ K_ba, which needs K_bb positive definite and no damping on them. An empty M stands
 /// for the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
@@ -28,6 +29,9 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
 /// every unknown needs mass.
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
                                         const SparseMatrix& damping = {});
+
+/// M of particles with three unknowns each: diagonal; one mass per particle [kg].
+SparseMatrix lumped_mass(std::span<const double> mass);
 
 /// diag(d) A diag(d).
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d);

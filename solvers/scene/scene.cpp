@@ -1,6 +1,8 @@
 #include "solvers/scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -27,12 +29,37 @@ Couplings all_couplings(const Terms& terms) {
 
 }  // namespace
 
+Scene::Scene(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,
+             const TermMaker& make_terms, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
+             RayleighDamping damping)
+    : gravity_(gravity), damping_(damping) {
+  if (mass.size() != rest.size())
+    throw std::invalid_argument(std::to_string(mass.size()) + " masses for " + std::to_string(rest.size()) +
+                                " particles");
+  for (const double m : mass)
+    if (!(m > 0 && std::isfinite(m)))
+      throw std::invalid_argument("a particle's mass is " + std::to_string(m) +
+                                  " kg, expected positive and finite");
+  number_particles(rest, mass, pinned);
+  terms_ = make_terms(number_, free_count_);
+}
+
 template <class Cloth>
 Scene::Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
              RayleighDamping damping)
-    : gravity_(gravity), damping_(damping) {
-  number_particles(cloth.rest, cloth.mass, pinned);
-  terms_ = make_terms(cloth, number_, free_count_);
+    : Scene(
+          cloth.rest, cloth.mass,
+          [&](const std::vector<int>& number, int free_count) {
+            return make_terms(cloth, number, free_count);
+          },
+          pinned, gravity, damping) {}
+
+void Scene::add(const TermMaker& make_terms) {
+  if (has_matrices())
+    throw std::invalid_argument("a term was added after the scene's matrices were made, expected before");
+  SceneTerms more = make_terms(number_, free_count_);
+  std::move(more.elastic.begin(), more.elastic.end(), std::back_inserter(terms_.elastic));
+  std::move(more.damping.begin(), more.damping.end(), std::back_inserter(terms_.damping));
 }
 
 template Scene::Scene(const SpringNet&, const std::vector<int>&, const Eigen::Vector3d&, RayleighDamping);

@@ -34,6 +34,17 @@ class Scene final : public System {
   Scene(const Cloth& cloth, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
         RayleighDamping damping);
 
+  /// Any particles at their rest positions [m] with their masses [kg], and whatever terms act on them; none
+  /// where the maker makes none. Throws likewise, and where a mass is not positive and finite or not one for
+  /// each particle.
+  Scene(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,
+        const TermMaker& make_terms, const std::vector<int>& pinned, const Eigen::Vector3d& gravity,
+        RayleighDamping damping);
+
+  /// More that acts on the particles. Throws std::invalid_argument once there are matrices (has_matrices):
+  /// their pattern is that of the terms at hand when they were made.
+  void add(const TermMaker& make_terms);
+
   int particles() const { return static_cast<int>(number_.size()); }
   int free_particles() const { return free_count_; }
   const RayleighDamping& damping() const { return damping_; }

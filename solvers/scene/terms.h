@@ -1,7 +1,16 @@
 // The terms that a scene sums: energies and dampings over its particles. One virtual call per term and
 // evaluation, plain loops inside. A scene without a term does not have the object.
+//
+// A term of one's own derives from ElasticTerm or DampingTerm and joins a scene through a TermMaker:
+//
+//     scene.add([](const std::vector<int>& number, int free_count) {
+//       SceneTerms mine;
+//       mine.elastic.push_back(std::make_unique<MyAnchor>(number[7], free_count));
+//       return mine;
+//     });
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -75,5 +84,9 @@ struct SceneTerms {
   std::vector<std::unique_ptr<ElasticTerm>> elastic;
   std::vector<std::unique_ptr<DampingTerm>> damping;
 };
+
+/// Makes terms in a scene's numbers: particle p of those that the scene was made of is number[p], and the
+/// first `free_count` numbers are those of the particles that can move.
+using TermMaker = std::function<SceneTerms(const std::vector<int>& number, int free_count)>;
 
 }  // namespace springstab

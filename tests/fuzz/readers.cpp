@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "experiments/input/scene_description.h"
+#include "experiments/inputs/scene_description.h"
 #include "solvers/io/gmsh.h"
 #include "solvers/io/harwell_boeing.h"
 #include "solvers/io/input_error.h"

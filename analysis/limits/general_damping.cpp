@@ -1,0 +1,251 @@
+#include "analysis/limits/general_damping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "analysis/constants.h"
+#include "analysis/spectra/generator_spectrum.h"
+
+namespace springstab {
+namespace {
+
+constexpr Eigen::Index shift_invert_limit = 20'000;
+constexpr double near_enough = 0.9;  // certified / estimate
+
+// The positive root of a h d + b h² k = c, without cancellation; ∞ where there is none.
+double root(double a, double b, double c, const ModePoint& p) {
+  const double linear = a * std::max(p.d, 0.0), quadratic = b * std::max(p.k, 0.0);
+  return 2 * c / (linear + std::hypot(linear, 2 * std::sqrt(c * quadratic)));
+}
+
+}  // namespace
+
+// Newton's method on λ_max, from above: a unit vector's own root is an upper bound, and the eigenvector at h
+// has the root to second order. The way there needs no accurate eigenvectors.
+std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
+                                  const Stiffening& stiffening) {
+  const auto& [a, b, c] = condition;
+  // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
+  constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-7, stiffened = 1e-5;
+  const double last = stiffening.factor == 1 ? sharp : stiffened;
+  double h = infinity;
+  Eigen::VectorXd near;
+  for (const auto& [x, y] : {std::pair{0.0, 1.0}, {1.0, 0.0}}) {
+    const std::optional<ExtremePoint> p = range.farthest(x, y, first);
+    if (!p) return std::nullopt;
+    if (const double next = root(a, b, c, stiffening(*p)); next < h) h = next, near = p->vector;
+  }
+  double tolerance = loose;
+  for (int i = 0; i < 50 && std::isfinite(h); ++i) {
+    const double x = a * h, y = b * h * h;
+    const std::optional<ExtremePoint> p =
+        range.farthest(x, x * stiffening.added_damping + y * stiffening.factor, tolerance, near);
+    if (!p) return std::nullopt;
+    near = p->vector;
+    const double next = std::min(h, root(a, b, c, stiffening(*p)));
+    const double change = 1 - next / h;
+    h = next;
+    if (tolerance == last && change < 1e-6) break;  // the next change is about its square
+    if (change < 1e-3) tolerance = last;
+  }
+  return h;
+}
+
+std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h) {
+  if (!std::isfinite(h)) return h;
+  const auto holds = [&](double step) {
+    return proof.holds(condition.bound, condition.x * step, condition.y * step * step);
+  };
+  double gap = 1e-10, failed = 0;
+  for (; !holds(h * (1 - gap)); gap = std::min(4 * gap, (1 + gap) / 2)) {
+    failed = gap;
+    if (gap > 1 - 1e-3) return std::nullopt;
+  }
+  while (gap - failed > 1e-3) {  // wide only where diagonal dominance alone proves
+    const double middle = (gap + failed) / 2;
+    (holds(h * (1 - middle)) ? gap : failed) = middle;
+  }
+  return h * (1 - gap);
+}
+
+std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane& condition,
+                                   ArpackOptions options) {
+  options.tolerance = std::max(options.tolerance, 1e-6);  // only guides the proof
+  const std::optional<double> h = exact_limit(NumericalRange(s, options), condition);
+  if (!h) return std::nullopt;
+  DefinitenessProof proof(s);
+  return proved_limit(proof, condition, *h);
+}
+
+GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0,
+                               const DampingModel& damping, double safety, bool proofs,
+                               const ArpackOptions& options)
+    : k0_(k0), damping_(damping), safety_(safety), proofs_(proofs), s_(s), certified_(s, options) {}
+
+MethodLimits GeneralDamping::limits(const Method& method) {
+  const StabilityRegion& region = stability_region(method);
+  for (const auto& [other, limits] : known_)
+    if (region.same_conditions(*other)) return limits;
+  known_.emplace_back(&region, compute(method));
+  return known_.back().second;
+}
+
+MethodLimits GeneralDamping::compute(const Method& method) {
+  MethodLimits limits = method_limits(method, k0_, damping_, safety_);
+  if (!k0_.converged) return limits;
+  if (!s_.symmetric) {
+    limits = {};
+    limits.unproved = "K or D is not symmetric";
+  }
+  if (!limits.unproved.empty()) {
+    add_estimate(method, limits);
+    return limits;
+  }
+  if (limits.status != LimitStatus::unknown) return limits;
+  if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
+    add_exact(*condition, limits);
+  } else {
+    add_certified(method, limits);
+    if (s_.size() <= generator_limit) {
+      add_estimate(method, limits);
+      add_lyapunov(method, limits);
+    } else {
+      add_estimate_near_boundary(method, limits);
+    }
+  }
+  return limits;
+}
+
+std::vector<Stiffening> GeneralDamping::stiffenings() const {
+  std::vector<Stiffening> all{{}, {safety_, 0}};
+  if (damping_.alpha > 0) all.push_back({safety_, (safety_ - 1) * damping_.alpha});
+  return all;
+}
+
+void GeneralDamping::set_certified(std::optional<double> h, Proof proof, MethodLimits& limits) {
+  limits.h_certified = h;
+  if (h) {
+    limits.proof = proof;
+    limits.unproved = {};
+  } else {
+    limits.unproved = s_.size() > DefinitenessProof::factorization_limit
+                          ? "there are too many unknowns to factorize a matrix"
+                          : "no convex part of the region was proved to hold the damping and stiffness";
+  }
+}
+
+void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits) {
+  double least = infinity;
+  for (const Stiffening& stiffening : stiffenings()) {
+    const std::optional<double> h = exact_limit(certified_.range(), condition, stiffening);
+    if (!h) return;
+    if (!limits.h_max) limits.h_max = *h;
+    least = std::min(least, *h);
+  }
+  limits.status = std::isinf(*limits.h_max) ? LimitStatus::unlimited : LimitStatus::limited;
+  if (proofs_)
+    set_certified(proved_limit(certified_.proof(), condition, *limits.h_max), Proof::matrix_condition,
+                  limits);
+  if (std::isfinite(least)) limits.recommended = least;
+}
+
+void GeneralDamping::add_certified(const Method& method, MethodLimits& limits) {
+  if (proofs_) set_certified(certified_.certified(method), Proof::polygon, limits);
+  double least = limits.h_certified.value_or(infinity);
+  const std::vector<Stiffening> all = stiffenings();
+  for (const Stiffening& stiffening : std::span(all).subspan(limits.h_certified ? 1 : 0)) {
+    const std::optional<double> h = certified_.estimated(method, stiffening);
+    if (!h) return;
+    least = std::min(least, *h);
+  }
+  if (std::isfinite(least)) limits.recommended = least;
+}
+
+const std::optional<std::vector<std::complex<double>>>& GeneralDamping::own_spectrum() {
+  if (spectra_.empty())
+    for (const Stiffening& stiffening : stiffenings()) {
+      StructuralMatrices stiffer = s_;
+      stiffer.stiffness *= stiffening.factor;
+      if (stiffening.added_damping > 0) stiffer.damping += stiffening.added_damping * s_.stiffness;
+      spectra_.push_back(generator_spectrum(stiffer));
+      if (!spectra_.back()) break;
+    }
+  return spectra_.front();
+}
+
+std::optional<double> GeneralDamping::growth() {
+  if (s_.size() > generator_limit || !own_spectrum()) return std::nullopt;
+  return growth_rate(*own_spectrum());
+}
+
+// The true critical step, from eigenvalues, where there are few enough unknowns; the recommended step then
+// is the smallest of such.
+void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
+  own_spectrum();
+  double least = infinity;
+  std::vector<double> steps;
+  const bool semidefinite = s_.symmetric && !k0_.indefinite && damping_.semidefinite;
+  for (const auto& spectrum : spectra_) {
+    if (semidefinite && spectrum && growth_rate(*spectrum) > 0) return;  // which cannot be: rounding is large
+    const std::optional<double> h = spectrum ? critical_step(method, *spectrum) : std::nullopt;
+    if (!h || !(*h > 0)) return;
+    steps.push_back(*h);
+    least = std::min(least, *h);
+  }
+  limits.h_max = steps.front();
+  limits.status = std::isinf(steps.front()) ? LimitStatus::unlimited : LimitStatus::limited;
+  limits.source = LimitSource::estimate;
+  if (std::isfinite(least)) limits.recommended = least;
+  if (limits.h_certified) limits.h_certified = std::min(*limits.h_certified, *limits.h_max);
+}
+
+// Of many unknowns only the eigenvalues near those scalar modes of W that bind first. The true limit is not
+// larger than theirs, nor smaller than what is proved: an estimate where the two are near each other, else
+// nothing.
+void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimits& limits) {
+  if (!limits.h_certified || s_.size() > shift_invert_limit) return;
+  struct Near {
+    double limit;  // [s]
+    std::complex<double> mu;
+  };
+  std::vector<Near> shifts;
+  for (const ModePoint& p : certified_.outline()) {
+    const std::complex<double> root = std::sqrt(std::complex<double>(p.d * p.d - 4 * p.k));
+    for (const std::complex<double> mu : {(-p.d + root) / 2.0, (-p.d - root) / 2.0})
+      if (mu.imag() >= 0 && std::abs(mu) > 0)
+        shifts.push_back({critical_step(method, {mu}).value_or(infinity), mu});
+  }
+  std::sort(shifts.begin(), shifts.end(), [](const Near& p, const Near& q) { return p.limit < q.limit; });
+  constexpr std::size_t most_shifts = 3;
+  constexpr Eigen::Index modes_a_shift = 8;
+  double least = infinity;
+  for (std::size_t i = 0; i < std::min(most_shifts, shifts.size()) && shifts[i].limit < least; ++i) {
+    const std::vector<std::complex<double>> modes =
+        modes_near(s_, shifts[i].mu, modes_a_shift, {.tolerance = 1e-9, .basis_size = 40, .max_restarts = 6});
+    const std::optional<double> h = critical_step(method, modes, std::sqrt(k0_.value));
+    if (!h) return;
+    least = std::min(least, *h);
+  }
+  if (!(least >= *limits.h_certified && near_enough * least <= *limits.h_certified)) return;
+  limits.h_max = least;
+  limits.status = LimitStatus::limited;
+  limits.source = LimitSource::estimate;
+}
+
+// Where the polygons prove much less than what is true, and there are few unknowns.
+void GeneralDamping::add_lyapunov(const Method& method, MethodLimits& limits) {
+  if (!proofs_ || !limits.h_max || s_.size() > LyapunovSteps::unknowns_limit) return;
+  const double known = limits.h_certified.value_or(0);
+  if (known > 0.999 * *limits.h_max) return;
+  if (!lyapunov_) lyapunov_.emplace(s_);
+  if (const std::optional<double> h = lyapunov_->certified(method, known, *limits.h_max)) {
+    set_certified(h, Proof::lyapunov, limits);
+  } else if (!limits.h_certified && !method.has_magnitude()) {
+    limits.unproved =
+        "no convex part of the region was proved to hold the damping and stiffness, and a step that asks for "
+        "more than accelerations has no Lyapunov proof";
+  }
+}
+
+}  // namespace springstab

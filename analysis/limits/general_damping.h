@@ -1,0 +1,68 @@
+// Stable steps of structures whose D' does not commute with K', as dampers along springs do not: exact where
+// a method's condition is one for matrices (StabilityRegion::exact_condition).
+#pragma once
+
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "analysis/limits/method_limits.h"
+#include "analysis/proofs/certified_step.h"
+#include "analysis/proofs/lyapunov_step.h"
+#include "analysis/spectra/numerical_range.h"
+
+namespace springstab {
+
+/// The h at which λ_max(x hD' + y h²K') = bound; ∞ where D' = K' = 0; nothing when an eigenvalue did not
+/// converge. x, y >= 0 and bound > 0; D', K' are those of `range`, stiffened.
+std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
+                                  const Stiffening& stiffening = {});
+
+/// The largest step found below `h` at which x hD' + y h²K' < bound is proved; nothing where none was.
+std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h);
+
+/// Below what it returns a method with that exact condition is stable for these matrices, K and D positive
+/// semidefinite: proved. Nothing where no proof was found.
+std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane& condition,
+                                   ArpackOptions options = {});
+
+/// All that `limits` says of one structure with damping of kind `general`.
+class GeneralDamping {
+ public:
+  /// `s`, with its damping, must outlive it. Without `proofs` nothing is certified, which is quicker.
+  GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
+                 double safety, bool proofs, const ArpackOptions& options = {});
+  GeneralDamping(StructuralMatrices&&, const StiffestMode&, const DampingModel&, double, bool,
+                 const ArpackOptions& = {}) = delete;
+
+  /// Nothing is certified where K or D is indefinite or not symmetric, and that is the reason given: there
+  /// the eigenvalues decide, of the motions that do not grow by themselves.
+  MethodLimits limits(const Method& method);
+
+  /// How fast the motion itself grows, the largest Re μ [1/s]: 0 where none does, nothing where not all
+  /// eigenvalues were computed.
+  std::optional<double> growth();
+
+ private:
+  const std::optional<std::vector<std::complex<double>>>& own_spectrum();
+  MethodLimits compute(const Method& method);
+  std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
+  void set_certified(std::optional<double> h, Proof proof, MethodLimits& limits);
+  void add_exact(const HalfPlane& condition, MethodLimits& limits);
+  void add_certified(const Method& method, MethodLimits& limits);
+  void add_estimate(const Method& method, MethodLimits& limits);
+  void add_estimate_near_boundary(const Method& method, MethodLimits& limits);
+  void add_lyapunov(const Method& method, MethodLimits& limits);
+
+  StiffestMode k0_;
+  DampingModel damping_;
+  double safety_;
+  bool proofs_;
+  const StructuralMatrices& s_;
+  std::vector<std::optional<std::vector<std::complex<double>>>> spectra_;  // of each stiffening, when needed
+  CertifiedSteps certified_;
+  std::optional<LyapunovSteps> lyapunov_;  // when needed
+  std::vector<std::pair<const StabilityRegion*, MethodLimits>> known_;
+};
+
+}  // namespace springstab

@@ -1,0 +1,106 @@
+#include "analysis/limits/step_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analysis/constants.h"
+#include "analysis/gsl/numerics.h"
+
+namespace springstab {
+namespace {
+
+void check(const RayleighModes& m) {
+  for (double value : {m.k_min, m.k_max, m.d0, m.alpha})
+    if (!(value >= 0 && std::isfinite(value)))
+      throw std::invalid_argument("a mode's stiffness or damping is " + std::to_string(value) +
+                                  ", expected finite and not negative");
+  if (m.k_min > m.k_max) throw std::invalid_argument("k_min is larger than k_max");
+}
+
+}  // namespace
+
+// Each mode's limit is exact; over the modes it is scanned in log k and every local minimum refined. What
+// depends on k is only the ratio d/√k, which varies slowly in log k, so nothing hides between the samples.
+double critical_step(const StabilityRegion& region, const RayleighModes& modes) {
+  check(modes);
+  const auto limit = [&](double k) { return region.critical_step(k, modes.d0 + modes.alpha * k); };
+  double smallest = std::min(limit(modes.k_min), limit(modes.k_max));
+  if (modes.k_min == modes.k_max || (modes.d0 == 0 && modes.alpha == 0)) return smallest;
+
+  constexpr int samples = 240;
+  const double top = std::log(modes.k_max);
+  const double bottom = std::log(std::max(modes.k_min, 1e-16 * modes.k_max));
+  const auto log_limit = [&](double log_k) { return limit(std::exp(log_k)); };
+  std::vector<double> at, value;
+  for (int i = 0; i <= samples; ++i) {
+    at.push_back(bottom + (top - bottom) * i / samples);
+    value.push_back(log_limit(at.back()));
+    smallest = std::min(smallest, value.back());
+  }
+  for (std::size_t i = 1; i + 1 < at.size(); ++i)
+    if (value[i] < value[i - 1] && value[i] < value[i + 1] && value[i] < 1.1 * smallest)
+      smallest = std::min(smallest, minimum_near(log_limit, at[i - 1], at[i], at[i + 1]));
+  return smallest;
+}
+
+double designed_alpha(const StabilityRegion& region, double h, double d0) {
+  return h * region.damping_line(h * d0).slope;
+}
+
+DampingDesign design_damping(const StabilityRegion& region, double k_max, double d0) {
+  check({.k_max = k_max, .d0 = d0});
+  const double base_limit = d0 > 0 ? region.constants().real_interval / d0 : infinity;
+  const double apex_limit = k_max > 0 ? std::sqrt(region.constants().y_max / k_max) : infinity;
+  double upper = std::min(base_limit, apex_limit);
+  if (upper == infinity) return {infinity, 0};
+
+  // Largest h whose best line from (h d0, 0) reaches h² k_max; the reach may jump, so all of (0, upper] is
+  // scanned.
+  const auto feasible = [&](double h) {
+    return region.damping_line(h * d0).reach >= h * h * k_max * (1 - 1e-14);
+  };
+  const auto design = [&](double h) { return DampingDesign{h, designed_alpha(region, h, d0)}; };
+  if (feasible(upper)) return design(upper);
+  constexpr int samples = 200;
+  for (int i = samples - 1; i > 0; --i) {
+    double lower = upper * i / samples;
+    if (!feasible(lower)) continue;
+    double above = upper * (i + 1) / samples;
+    while (above - lower > 1e-13 * above) {
+      const double middle = (lower + above) / 2;
+      (feasible(middle) ? lower : above) = middle;
+    }
+    return design(lower);
+  }
+  return {0, 0};
+}
+
+double recommended_step(const StabilityRegion& region, const RayleighModes& modes, double safety) {
+  if (!(safety >= 1 && std::isfinite(safety)))
+    throw std::invalid_argument("the safety factor is " + std::to_string(safety) + ", expected at least 1");
+  RayleighModes stiffer{safety * modes.k_min, safety * modes.k_max, modes.d0, modes.alpha / safety};
+  const double damping_fixed = critical_step(region, stiffer);
+  stiffer.alpha = modes.alpha;
+  return std::min({critical_step(region, modes), damping_fixed, critical_step(region, stiffer)});
+}
+
+// recommended_step falls as the factor grows.
+std::optional<double> safety_for_step(const StabilityRegion& region, const RayleighModes& modes, double h,
+                                      double most) {
+  const auto short_enough = [&](double safety) {
+    return recommended_step(region, modes, safety) <= h * (1 + 1e-12);
+  };
+  if (short_enough(1)) return 1;
+  if (!short_enough(most)) return std::nullopt;
+  double too_small = 1, enough = most;
+  while (enough > too_small * (1 + 1e-4)) {
+    const double middle = std::sqrt(too_small * enough);
+    (short_enough(middle) ? enough : too_small) = middle;
+  }
+  return enough;
+}
+
+}  // namespace springstab

@@ -1,0 +1,97 @@
+#include "analysis/limits/structure.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+#include "analysis/proofs/definiteness.h"
+#include "solvers/scene/scene.h"
+#include "solvers/spring_chain.h"
+
+namespace springstab {
+namespace {
+
+double frobenius_product(const SparseMatrix& a, const SparseMatrix& b) { return a.cwiseProduct(b).sum(); }
+
+// S A S with S = 1/√D_ii, or 1/√M_ii where nothing damps: unknowns weigh alike, however light or soft.
+StructuralMatrices unit_damping(const StructuralMatrices& s) {
+  const Eigen::VectorXd damping = s.damping.diagonal(), mass = s.mass.diagonal();
+  const Eigen::VectorXd root = (damping.array() > 0).select(damping, mass).cwiseSqrt().cwiseInverse();
+  StructuralMatrices unit;
+  unit.stiffness = scaled(s.stiffness, root);
+  unit.mass = scaled(s.mass, root);
+  unit.damping = scaled(s.damping, root);
+  return unit;
+}
+
+// Whether no entry is larger than `tolerance` times √(size_i size_j).
+bool is_negligible(const SparseMatrix& a, double tolerance, const Eigen::VectorXd& size) {
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      if (!(std::abs(it.value()) <= tolerance * std::sqrt(size[it.row()]) * std::sqrt(size[j]))) return false;
+  return true;
+}
+
+// The least-squares fit of D by d0 M + alpha K, scaled so that M and K have unit size.
+DampingModel rayleigh_fit(const StructuralMatrices& s) {
+  const double m = s.mass.norm(), k = s.stiffness.norm();
+  const double mk = k > 0 ? frobenius_product(s.mass, s.stiffness) / (m * k) : 0;
+  const Eigen::Matrix2d normal{{1, mk}, {mk, k > 0 ? 1.0 : 0.0}};
+  const Eigen::Vector2d right{frobenius_product(s.damping, s.mass) / m,
+                              k > 0 ? frobenius_product(s.damping, s.stiffness) / k : 0};
+  const Eigen::Vector2d c = normal.fullPivLu().solve(right);
+  return {DampingModel::Kind::rayleigh, c[0] / m, k > 0 ? c[1] / k : 0};
+}
+
+DampingModel model_of(const RayleighDamping& damping) {
+  const bool none = damping.d0 == 0 && damping.alpha == 0;
+  return {none ? DampingModel::Kind::none : DampingModel::Kind::rayleigh, damping.d0, damping.alpha};
+}
+
+}  // namespace
+
+DampingModel classify_damping(const StructuralMatrices& s) {
+  if (!s.has_damping()) return {};
+  if (!s.symmetric) return {DampingModel::Kind::general, 0, 0, false};
+  constexpr double tolerance = 1e-12;
+  const StructuralMatrices unit = unit_damping(s);
+  DampingModel fit = rayleigh_fit(unit);
+  const double size = unit.damping.norm();
+  if (fit.d0 < 0 && -fit.d0 * unit.mass.norm() <= tolerance * size) fit.d0 = 0;
+  if (fit.alpha < 0 && -fit.alpha * unit.stiffness.norm() <= tolerance * size) fit.alpha = 0;
+  if (fit.d0 >= 0 && fit.alpha >= 0) {
+    const SparseMatrix rest = unit.damping - fit.d0 * unit.mass - fit.alpha * unit.stiffness;
+    const Eigen::VectorXd sizes = Eigen::VectorXd(unit.damping.diagonal()).cwiseAbs() +
+                                  fit.d0 * Eigen::VectorXd(unit.mass.diagonal()) +
+                                  fit.alpha * Eigen::VectorXd(unit.stiffness.diagonal()).cwiseAbs();
+    if (is_negligible(rest, tolerance, sizes)) return fit;
+  }
+  return {DampingModel::Kind::general, 0, 0, is_semidefinite(s.damping, s.mass)};
+}
+
+DampingModel damping_of(const Scene& scene) {
+  DampingModel damping = model_of(scene.damping());
+  if (scene.has_own_damping()) damping.kind = DampingModel::Kind::general;
+  return damping;
+}
+
+DampingModel damping_of(const SpringChain& chain) { return model_of(chain.damping()); }
+
+Structure structure_of(StructuralMatrices matrices) {
+  const DampingModel damping = classify_damping(matrices);
+  return {std::move(matrices), damping};
+}
+
+Structure structure_of(Scene& scene, const State<Vector>& state) {
+  BlockLinearSystem& linear = scene.linearized(state.x, state.v);
+  Structure structure{{}, damping_of(scene)};
+  StructuralMatrices& s = structure.matrices;
+  s.stiffness = linear.stiffness().to_sparse();
+  s.mass = lumped_mass(linear.mass());
+  if (const BlockSparseMatrix* own = linear.own_damping())
+    s.damping = linear.damping().d0 * s.mass + linear.damping().alpha * s.stiffness + own->to_sparse();
+  return structure;
+}
+
+Structure structure_of(const SpringChain& chain) { return {chain.matrices(), damping_of(chain)}; }
+
+}  // namespace springstab

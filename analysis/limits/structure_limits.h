@@ -1,0 +1,61 @@
+// The answer in one call: the largest stable step of every method for a structure.
+//
+//     StructureLimits answer(structure_of(prepare(read_matrix("K.mtx"), read_matrix("M.mtx"))));
+//     std::cout << "k0 = " << answer.k0().value << " 1/s²\n";
+//     for (const Method& method : all_methods())
+//       if (const MethodLimits& limits = answer.limits(method); limits.recommended)
+//         std::cout << method.name() << ": " << *limits.recommended << " s\n";
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "analysis/limits/general_damping.h"
+#include "analysis/limits/method_limits.h"
+#include "analysis/limits/structure.h"
+#include "analysis/method.h"
+
+namespace springstab {
+
+struct StructureLimitsOptions {
+  double safety = 1.5;  // >= 1, on the stiffness
+  /// Else no bound on k0, nothing certified, no step for every pose and no transient growth, which is
+  /// quicker.
+  bool certify = true;
+  std::uint64_t seed = 1;            // of the start vectors
+  double k0_tolerance = 1e-10;       // of k0's residual, relative
+  std::optional<double> max_step{};  // recommended where nothing limits the step [s]
+};
+
+/// Owns what it needs. Everything is computed when it is first asked for, and kept. Not to be shared between
+/// threads.
+class StructureLimits {
+ public:
+  /// `k0` where it is known already.
+  explicit StructureLimits(Structure structure, const StructureLimitsOptions& options = {},
+                           std::optional<StiffestMode> k0 = std::nullopt);
+
+  const Structure& structure() const { return *structure_; }
+  /// Throws std::invalid_argument for rates of motion beyond double precision.
+  const StiffestMode& k0();
+  /// All unknown where k0 did not converge.
+  const MethodLimits& limits(const Method& method);
+  /// How fast the motion itself grows, the largest Re μ [1/s]: 0 where none does; nothing where it was not
+  /// computed, as without damping or with Rayleigh's, or where not all eigenvalues were.
+  std::optional<double> growth();
+
+ private:
+  GeneralDamping* general();  // null where k0 and two numbers decide
+  MethodLimits compute(const Method& method);
+  void add_transient_growth(const Method& method, MethodLimits& limits);
+
+  std::shared_ptr<const Structure> structure_;  // stays where it is, however this object moves
+  StructureLimitsOptions options_;
+  std::optional<StiffestMode> k0_;
+  std::unique_ptr<GeneralDamping> general_;
+  std::map<Method, MethodLimits, Method::ByIdentity> known_;
+};
+
+}  // namespace springstab

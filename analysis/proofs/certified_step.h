@@ -1,0 +1,57 @@
+// Steps that are proved stable for any symmetric positive semidefinite M, K, D, whether D' and K' commute or
+// not.
+//
+// An eigenpair (μ, v) of the damped system obeys μ² + (v*D'v) μ + v*K'v = 0: it is one of the scalar mode
+// (d, k) = (v*D'v, v*K'v), a point of the joint numerical range W. So where W, scaled to (h d, h² k), lies
+// inside a convex polygon inside the method's region, the method is stable. An edge a X + b Y <= c holds on
+// all of W iff c M - a h D - b h² K is positive semidefinite, and a Cholesky factorization proves that.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "analysis/proofs/definiteness.h"
+#include "analysis/proofs/inscribed_polygon.h"
+#include "analysis/spectra/numerical_range.h"
+
+namespace springstab {
+
+class CertifiedSteps {
+ public:
+  /// `s`, whose K and D are positive semidefinite, must outlive it.
+  explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
+  explicit CertifiedSteps(StructuralMatrices&&, const ArpackOptions& = {}) = delete;
+
+  const NumericalRange& range() const { return range_; }
+  /// The proofs of the whole structure; made when first asked for.
+  DefinitenessProof& proof();
+
+  /// A step proved stable; nothing where there is none in the polygons, as for explicit Euler when D is
+  /// singular on motions that K resists, or where eigenvalues did not converge.
+  std::optional<double> certified(const Method& method);
+
+  /// Points of W: those with the largest k and d, and where an edge of a polygon has bound. Empty where
+  /// eigenvalues did not converge.
+  const std::vector<ModePoint>& outline();
+
+  /// What `certified` would be for the stiffened structure, by eigenvalues instead of proofs.
+  std::optional<double> estimated(const Method& method, const Stiffening& stiffening);
+
+ private:
+  struct Restricted;  // the structure without its rigid motions
+
+  template <class Holds>
+  std::optional<double> search(const Method& method, const Stiffening& stiffening, const Holds& holds);
+  std::optional<ExtremePoint> farthest(const HalfPlane& edge, double h, const Stiffening& stiffening);
+  Restricted& restricted();
+
+  const StructuralMatrices& s_;
+  ArpackOptions options_;
+  NumericalRange range_;
+  std::optional<DefinitenessProof> proof_;
+  std::shared_ptr<Restricted> restricted_;
+  std::vector<ModePoint> outline_;  // points of W, more where a polygon's edge asked for them
+};
+
+}  // namespace springstab

@@ -1,0 +1,264 @@
+#include "analysis/regions/stability_region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "analysis/constants.h"
+#include "analysis/per_method.h"
+#include "analysis/regions/region_pieces.h"
+
+namespace springstab {
+namespace {
+
+constexpr double cancellation = 1e-14;  // relative to the terms that cancel: a sign below it is not known
+constexpr double neutrality =
+    1e-12;  // a condition violated by less, relative to its terms, counts as neutral
+
+constexpr std::array<Bound, 3> conditions{Bound::complex_pair, Bound::plus_one, Bound::minus_one};
+
+// One of Jury's conditions along a curve.
+struct Condition {
+  Polynomial numerator, denominator;
+  Bound bound;
+
+  Condition(const RationalFunction& f, const Curve& curve, Bound b)
+      : numerator(f.numerator().along(curve.x, curve.y)),
+        denominator(f.denominator().along(curve.x, curve.y)),
+        bound(b) {}
+
+  double operator()(double t) const { return numerator(t) / denominator(t); }
+
+  // -1, 0, +1; zero where the value is below `tolerance` of the terms of the numerator.
+  int sign(double t, double tolerance) const {
+    double size = 0;
+    for (std::size_t i = numerator.c.size(); i-- > 0;) size = size * std::abs(t) + std::abs(numerator.c[i]);
+    const double value = numerator(t);
+    if (std::abs(value) <= tolerance * size) return 0;
+    return (value > 0) == (denominator(t) > 0) ? 1 : -1;
+  }
+
+  // The sign just after t = 0, from the lowest terms; 0 only where the condition is an equality throughout.
+  int sign_after_zero() const {
+    const auto lowest = [](const Polynomial& p) {
+      for (double c : p.c)
+        if (c != 0) return c;
+      return 0.0;
+    };
+    const double n = lowest(numerator), d = lowest(denominator);
+    return n == 0 ? 0 : (n > 0) == (d > 0) ? 1 : -1;
+  }
+};
+
+std::vector<Condition> along(const std::array<RationalFunction, 3>& jury, const Curve& curve) {
+  std::vector<Condition> result;
+  for (std::size_t i = 0; i < jury.size(); ++i) result.emplace_back(jury[i], curve, conditions[i]);
+  return result;
+}
+
+struct Candidate {
+  double t;
+  Bound bound;
+};
+
+// Every t in (t_min, t_max) where some condition may change its sign, ascending.
+std::vector<Candidate> candidates(const std::vector<Condition>& jury, double t_min, double t_max) {
+  std::vector<Candidate> found;
+  for (const Condition& condition : jury)
+    for (const Polynomial* p : {&condition.numerator, &condition.denominator})
+      for (double t : p->real_roots())
+        if (t > t_min && t < t_max) found.push_back({t, condition.bound});
+  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) { return a.t < b.t; });
+  return found;
+}
+
+std::vector<RationalFunction> two_by_two(const Method& method) {
+  if (method.size() > 2)
+    throw std::invalid_argument("method '" + method.name() + "' carries " +
+                                std::to_string(method.info().memory) +
+                                " vectors beyond x and v, expected none: Jury's three inequalities decide "
+                                "2x2 matrices");
+  return method.symbolic_step();
+}
+
+std::array<RationalFunction, 3> jury_conditions(const std::vector<RationalFunction>& a) {
+  const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
+  return {one - determinant, one - trace + determinant, one + trace + determinant};
+}
+
+}  // namespace
+
+// u -> 4u / (1 - u²).
+std::vector<double> whole_line() {
+  constexpr int half = 400;
+  std::vector<double> grid;
+  for (int i = -half + 1; i < half; ++i) {
+    const double u = static_cast<double>(i) / half;
+    grid.push_back(4 * u / (1 - u * u));
+  }
+  return grid;
+}
+
+double between(double a, double b) {
+  if (std::isfinite(a) && std::isfinite(b)) return a + (b - a) / 2;
+  if (std::isfinite(a)) return 2 * std::abs(a) + 1;
+  if (std::isfinite(b)) return -2 * std::abs(b) - 1;
+  return 0;
+}
+
+double cosine_point(double left, double right, double angle) {
+  return left + (right - left) * 0.5 * (1 - std::cos(angle));
+}
+
+StabilityRegion::StabilityRegion(const Method& method)
+    : amplification_(two_by_two(method)), jury_(jury_conditions(amplification_)) {
+  all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
+  constants_ = find_constants();
+}
+
+StabilityRegion::StabilityRegion(StabilityRegion&&) noexcept = default;
+StabilityRegion::~StabilityRegion() = default;
+
+std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve, double t_min,
+                                                              double t_max) const {
+  const std::vector<Condition> jury = along(jury_, curve);
+  std::vector<Candidate> cuts = candidates(jury, t_min, t_max);
+  cuts.insert(cuts.begin(), {t_min, Bound::window});
+  cuts.push_back({t_max, Bound::window});
+
+  std::vector<StableInterval> found;
+  bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const double t = between(cuts[i].t, cuts[i + 1].t);
+    const bool stable = cuts[i].t < cuts[i + 1].t &&
+                        std::all_of(jury.begin(), jury.end(),
+                                    [&](const Condition& c) { return c.sign(t, cancellation) > 0; });
+    if (stable && touching) {
+      found.back().upper = cuts[i + 1].t;
+      found.back().upper_bound = cuts[i + 1].bound;
+    } else if (stable) {
+      found.push_back({cuts[i].t, cuts[i + 1].t, cuts[i].bound, cuts[i + 1].bound});
+    }
+    touching = stable;
+  }
+  return found;
+}
+
+double StabilityRegion::first_exit(const Curve& curve) const {
+  const std::vector<Condition> jury = along(jury_, curve);
+  for (const Condition& condition : jury)
+    if (condition.sign_after_zero() < 0) return 0;
+  const std::vector<Candidate> cuts = candidates(jury, 0, infinity);
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const double t = between(cuts[i].t, i + 1 < cuts.size() ? cuts[i + 1].t : infinity);
+    for (const Condition& condition : jury)
+      if (condition.sign(t, neutrality) < 0) return cuts[i].t;
+  }
+  return infinity;
+}
+
+double StabilityRegion::critical_step(double k, double d) const {
+  if (!(k >= 0) || !(d >= 0) || !std::isfinite(k) || !std::isfinite(d))
+    throw std::invalid_argument("critical_step: k = " + std::to_string(k) + ", d = " + std::to_string(d) +
+                                ", expected both finite and not negative");
+  const double rate = std::max(std::sqrt(k), d);  // [1/s], makes the curve dimensionless
+  if (rate == 0) return infinity;
+  const double s = std::sqrt(k) / rate;
+  return first_exit({{{0, d / rate}}, {{0, 0, s * s}}}) / rate;
+}
+
+StabilityRegion::Column StabilityRegion::column(double x, double y_min, double y_max) const {
+  return {x, stable_intervals({{{x}}, {{0, 1}}}, y_min, y_max)};
+}
+
+bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
+  return std::equal(jury_.begin(), jury_.end(), other.jury_.begin(),
+                    [](const RationalFunction& f, const RationalFunction& g) {
+                      return f.numerator() == g.numerator() && f.denominator() == g.denominator();
+                    });
+}
+
+std::optional<HalfPlane> StabilityRegion::exact_condition() const {
+  // Entries affine in X and Y stand for one matrix each, free of the order of products; a row of constants
+  // then eliminates x or v.
+  std::array<std::array<double, 3>, 4> entry;
+  for (std::size_t i = 0; i < entry.size(); ++i) {
+    const auto affine = amplification_[i].affine();
+    if (!affine) return std::nullopt;
+    entry[i] = *affine;
+  }
+  const auto constant = [&](std::size_t i) { return entry[i][1] == 0 && entry[i][2] == 0; };
+  if (!(constant(0) && constant(1) && entry[1][0] != 0) && !(constant(2) && constant(3) && entry[2][0] != 0))
+    return std::nullopt;
+  for (const Bound bound : {Bound::complex_pair, Bound::plus_one}) {  // these hold on the whole quadrant
+    const auto c = jury_[static_cast<std::size_t>(bound)].affine();
+    if (!c || std::any_of(c->begin(), c->end(), [](double v) { return v < 0; })) return std::nullopt;
+  }
+  const auto c = jury_[static_cast<std::size_t>(Bound::minus_one)].affine();
+  if (!c || !((*c)[0] > 0) || (*c)[1] > 0 || (*c)[2] > 0) return std::nullopt;
+  return HalfPlane{-(*c)[1], -(*c)[2], (*c)[0]};
+}
+
+// Every x in (left.x, right.x) where the structure changes, to the last bit, appended to `breaks`.
+void StabilityRegion::find_breaks(Column left, const Column& right, double y_min, double y_max,
+                                  std::vector<double>& breaks) const {
+  for (int i = 0; !left.same_structure(right); ++i) {
+    if (i == 16)
+      throw std::runtime_error("the stability boundary near X = " + std::to_string(left.x) +
+                               " could not be resolved");
+    Column before = left, after = right;
+    while (after.x - before.x > 1e-16) {
+      const double x = between(before.x, after.x);
+      if (x == before.x || x == after.x) break;
+      Column middle = column(x, y_min, y_max);
+      (middle.same_structure(left) ? before : after) = std::move(middle);
+    }
+    breaks.push_back(std::abs(before.x) < std::abs(after.x) ? before.x : after.x);
+    left = std::move(after);
+  }
+}
+
+std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::vector<double>& grid,
+                                                                   double y_min, double y_max) const {
+  std::vector<double> breaks{grid.front()};
+  Column left = column(grid.front(), y_min, y_max);
+  for (std::size_t i = 1; i < grid.size(); ++i) {
+    Column right = column(grid[i], y_min, y_max);
+    find_breaks(std::move(left), right, y_min, y_max, breaks);
+    left = std::move(right);
+  }
+  breaks.push_back(grid.back());
+
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    if (breaks[i + 1] - breaks[i] <= 1e-12 * std::max(1.0, std::abs(breaks[i]))) continue;
+    // A golden section, since two conditions may bind at once at round values of X.
+    const double x = breaks[i] + (breaks[i + 1] - breaks[i]) / (1 + std::numbers::phi);
+    Column inner = column(x, y_min, y_max);
+    if (!inner.intervals.empty()) pieces.push_back({breaks[i], breaks[i + 1], std::move(inner)});
+  }
+  return pieces;
+}
+
+bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, double y1) const {
+  const Curve segment{{{x0, x1 - x0}}, {{y0, y1 - y0}}};
+  for (const Condition& condition : along(jury_, segment)) {
+    const Polynomial& n = condition.numerator;
+    const Polynomial& d = condition.denominator;
+    const Polynomial minus_one{{-1.0}};
+    std::vector<double> extremes = (n.derivative() * d + minus_one * n * d.derivative()).real_roots();
+    extremes.push_back(0);
+    extremes.push_back(1);
+    for (double t : extremes)
+      if (t >= 0 && t <= 1 && !(condition(t) >= -10 * neutrality)) return false;
+  }
+  return true;
+}
+
+const StabilityRegion& stability_region(const Method& method) {
+  static PerMethod<StabilityRegion> regions;
+  return regions.of(method, [&] { return StabilityRegion(method); });
+}
+
+}  // namespace springstab

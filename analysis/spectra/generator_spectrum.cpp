@@ -1,0 +1,146 @@
+#include "analysis/spectra/generator_spectrum.h"
+
+#include <Eigen/SparseLU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/regions/stability_region.h"
+#include "analysis/spectra/spectrum.h"
+#include "solvers/linear/dense_solvers.h"
+
+namespace springstab {
+namespace {
+
+constexpr double rigid_rate = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
+constexpr double accurate = 1e-6;
+
+// A function of the generator commutes with it; symplectic Euler's matrix does not.
+bool has_stability_function(const Method& method) {
+  if (method.size() > 2) return false;
+  const double x = 0.3, y = 0.7;
+  const Eigen::Matrix2d a = method.amplification(x, y), c{{0, 1}, {-y, -x}};
+  return (a * c - c * a).norm() <= 1e-12 * a.norm();
+}
+
+/// K', D' and the generator in a time that is dimensionless.
+struct Generator {
+  double rate = 0;  // [1/s]
+  Eigen::MatrixXd stiffness, damping, matrix;
+};
+
+std::optional<Generator> generator_of(const StructuralMatrices& s) {
+  const Eigen::Index n = s.size();
+  if (n > generator_limit) return std::nullopt;
+  Generator g;
+  g.stiffness = as_dense(scaled_stiffness(s));
+  g.damping = Eigen::MatrixXd::Zero(n, n);
+  if (s.has_damping()) g.damping = as_dense(mass_scaled(s.damping, s.mass));
+  if (s.symmetric) {
+    g.stiffness = symmetric_part(g.stiffness);
+    g.damping = symmetric_part(g.damping);
+  }
+  g.rate = std::sqrt(g.stiffness.norm());
+  if (g.rate == 0) g.rate = g.damping.norm();
+  if (!(g.rate > 0)) return std::nullopt;
+  g.stiffness /= g.rate * g.rate;
+  g.damping /= g.rate;
+  g.matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  g.matrix.topRightCorner(n, n).setIdentity();
+  g.matrix.bottomLeftCorner(n, n) = -g.stiffness;
+  g.matrix.bottomRightCorner(n, n) = -g.damping;
+  return g;
+}
+
+}  // namespace
+
+std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s) {
+  const std::optional<Generator> generator = generator_of(s);
+  if (!generator) return std::nullopt;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix, false);
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  std::vector<std::complex<double>> modes;
+  for (const std::complex<double> mu : solver.eigenvalues())
+    if (std::abs(mu) > rigid_rate) modes.push_back(generator->rate * mu);
+  return modes;
+}
+
+std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s) {
+  const std::optional<Generator> generator = generator_of(s);
+  if (!generator) return std::nullopt;
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix);
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  const Eigen::MatrixXcd vectors = solver.eigenvectors().topRows(s.size());
+  const double rate = generator->rate;
+  std::vector<DampedMode> modes;
+  for (Eigen::Index j = 0; j < vectors.cols(); ++j) {
+    const std::complex<double> mu = solver.eigenvalues()[j];
+    if (!(std::abs(mu) > rigid_rate)) continue;
+    const Eigen::VectorXcd v = vectors.col(j).normalized();
+    modes.push_back({rate * mu, rate * v.dot(generator->damping * v).real(),
+                     rate * rate * v.dot(generator->stiffness * v).real()});
+  }
+  return modes;
+}
+
+double growth_rate(const std::vector<std::complex<double>>& modes) {
+  double largest = 0, growth = 0;
+  for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  for (const std::complex<double> mu : modes)
+    if (mu.real() > undamped * largest) growth = std::max(growth, mu.real());
+  return growth;
+}
+
+std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::complex<double> shift,
+                                             Eigen::Index count, const ArpackOptions& options) {
+  using Complex = std::complex<double>;
+  const Eigen::Index n = s.size();
+  const double rate = std::abs(shift);  // makes time dimensionless
+  const Complex sigma = shift / rate;
+  const SparseMatrix k = s.stiffness / (rate * rate);
+  const SparseMatrix d = s.has_damping() ? SparseMatrix(s.damping / rate) : SparseMatrix(n, n);
+  const Eigen::SparseMatrix<Complex> shifted =
+      (sigma * sigma * s.mass.cast<Complex>() + sigma * d.cast<Complex>() + k.cast<Complex>());
+  Eigen::SparseLU<Eigen::SparseMatrix<Complex>> factor;
+  factor.isSymmetric(true);
+  factor.compute(shifted);
+  if (factor.info() != Eigen::Success) return {};
+  // (C - σ)(x, v) = (a, b): v = a + σx and (σ²M + σD + K)x = -(Mb + Da + σMa).
+  const LinearOperator inverse{2 * n, [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+                                 const Eigen::VectorXcd a = in.head(n).cast<Complex>();
+                                 const Eigen::VectorXcd b = (in.tail(n) + sigma * a).eval();
+                                 const Eigen::VectorXcd x = factor.solve(-(s.mass * b + d * a));
+                                 out.resize(2 * n);
+                                 out << x.real(), (a + sigma * x).real();
+                               }};
+  const Eigenvalues found = dominant_eigenvalues(inverse, count, options);
+  std::vector<Complex> modes;
+  for (Eigen::Index i = 0; i < found.vectors.cols(); ++i) {
+    const Eigen::VectorXcd x = found.vectors.col(i).head(n);
+    const Complex mu = x.dot(found.vectors.col(i).tail(n)) / x.squaredNorm();
+    const Eigen::VectorXcd mass = mu * mu * (s.mass * x), damping = mu * (d * x), stiffness = k * x;
+    if ((mass + damping + stiffness).norm() <= accurate * (mass.norm() + damping.norm() + stiffness.norm()))
+      modes.push_back(rate * mu);
+  }
+  return modes;
+}
+
+std::optional<double> critical_step(const Method& method, const std::vector<std::complex<double>>& modes,
+                                    double largest) {
+  if (!has_stability_function(method)) return std::nullopt;
+  const StabilityRegion& region = stability_region(method);
+  double h = std::numeric_limits<double>::infinity();
+  for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  for (const std::complex<double> mu : modes) {
+    // A real μ stands for the mode with the double root μ.
+    const bool no_damping = std::abs(mu.real()) <= undamped * largest;
+    const double d = no_damping ? 0 : -2 * mu.real();
+    if (d < 0) continue;  // the motion itself grows
+    const double limit = region.critical_step(std::norm(mu), d);
+    if (no_damping && limit == 0) return std::nullopt;
+    h = std::min(h, limit);
+  }
+  return h;
+}
+
+}  // namespace springstab

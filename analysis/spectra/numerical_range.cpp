@@ -1,0 +1,71 @@
+#include "analysis/spectra/numerical_range.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/spectra/chebyshev_filter.h"
+#include "analysis/spectra/spectrum.h"
+#include "solvers/linear/dense_solvers.h"
+
+namespace springstab {
+namespace {
+
+// The least eigenvalue of `factor` times a.
+double lowest(double factor, const LinearOperator& a) {
+  return factor == 0 ? 0 : factor > 0 ? factor * a.lowest : factor * a.highest;
+}
+
+}  // namespace
+
+NumericalRange::NumericalRange(const StructuralMatrices& s, ArpackOptions options)
+    : size_(s.size()), options_(std::move(options)), stiffness_(mass_scaled(s.stiffness, s.mass)) {
+  if (s.has_damping()) {
+    damping_ = mass_scaled(s.damping, s.mass);
+  } else {
+    damping_ = {size_, [](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.setZero(in.size()); }, 0, 0};
+  }
+  if (size_ > dense_limit) return;
+  dense_damping_ = symmetric_part(as_dense(damping_));
+  dense_stiffness_ = symmetric_part(as_dense(stiffness_));
+}
+
+ExtremePoint NumericalRange::point(const Eigen::VectorXd& v) const {
+  Eigen::VectorXd image;
+  damping_.apply(v, image);
+  const double d = v.dot(image);
+  stiffness_.apply(v, image);
+  return {{d, v.dot(image)}, v};
+}
+
+std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double tolerance,
+                                                     const Eigen::VectorXd& near) const {
+  if (size_ <= dense_limit) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+        Eigen::MatrixXd(a * dense_damping_ + b * dense_stiffness_));
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    return point(solver.eigenvectors().rightCols<1>());
+  }
+  // Shifted to a positive semidefinite one, where a bound is known: the largest eigenvalue may be 0, and the
+  // null space is hidden from ARPACK, which multiplies even its start vector by the operator.
+  const double bound = lowest(a, damping_) + lowest(b, stiffness_);
+  const double shift = std::isfinite(bound) ? -bound : 0;
+  Eigen::VectorXd part;
+  const LinearOperator sum{size_,
+                           [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+                             stiffness_.apply(in, out);
+                             damping_.apply(in, part);
+                             out = b * out + a * part + shift * in;
+                           },
+                           bound + shift};
+  ArpackOptions options = options_;
+  options.tolerance = std::max(options.tolerance, tolerance);
+  if (near.size() > 0) {  // with a little of every other vector, lest the largest is orthogonal to it
+    const Eigen::VectorXd random = start_vector(size_, {}, options_.seed);
+    options.start = near + 1e-2 / random.norm() * random;
+  }
+  const SymmetricEigenpairs pairs = largest_eigenpair(sum, options);
+  if (!pairs.converged) return std::nullopt;
+  return point(pairs.vectors.col(0));
+}
+
+}  // namespace springstab

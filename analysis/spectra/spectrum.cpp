@@ -1,0 +1,193 @@
+#include "analysis/spectra/spectrum.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+
+#include "analysis/constants.h"
+#include "analysis/proofs/definiteness.h"
+#include "analysis/spectra/chebyshev_filter.h"
+#include "solvers/linear/dense_solvers.h"
+
+namespace springstab {
+namespace {
+
+using Cholesky = Eigen::SimplicialLLT<SparseMatrix>;
+
+constexpr Eigen::Index nonsymmetric_limit = 400;
+
+// 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
+Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
+
+double largest_row_sum(const SparseMatrix& a) {
+  return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
+}
+
+// A symmetric matrix as an operator, its eigenvalues bounded by Gershgorin's discs.
+LinearOperator symmetric_operator(SparseMatrix a) {
+  const Eigen::VectorXd centres = a.diagonal();
+  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
+  const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
+  return {matrix->rows(),
+          [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; },
+          (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+}
+
+StiffestMode dense_spectrum(const LinearOperator& s) {
+  const Eigen::MatrixXd matrix = symmetric_part(as_dense(s));
+  if (!matrix.allFinite())
+    throw std::invalid_argument("the mass-scaled stiffness is not finite, expected finite matrices");
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  StiffestMode mode;
+  mode.converged = solver.info() == Eigen::Success;
+  if (!mode.converged) return mode;
+  mode.value = solver.eigenvalues().tail<1>()[0];
+  mode.smallest = solver.eigenvalues()[0];
+  Eigen::VectorXd column;
+  s.apply(solver.eigenvectors().rightCols<1>(), column);
+  column -= mode.value * solver.eigenvectors().rightCols<1>();
+  mode.residual = column.stableNorm();
+  return mode;
+}
+
+void set_mode(const LinearOperator& s, std::complex<double> value, const Eigen::VectorXcd& v,
+              StiffestMode& mode) {
+  Eigen::VectorXd real, imaginary;
+  s.apply(v.real(), real);
+  s.apply(v.imag(), imaginary);
+  real -= (value * v).real();
+  imaginary -= (value * v).imag();
+  mode.value = std::abs(value);
+  mode.residual = std::hypot(real.stableNorm(), imaginary.stableNorm());
+}
+
+// For a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the
+// least real part.
+StiffestMode nonsymmetric_spectrum(const LinearOperator& s, const ArpackOptions& options) {
+  StiffestMode mode;
+  if (s.size > nonsymmetric_limit) {
+    const Eigenvalues found = dominant_eigenvalues(s, 1, options);
+    mode.converged = found.converged;
+    mode.products = found.products;
+    if (mode.converged) set_mode(s, found.values[0], found.vectors.col(0), mode);
+    return mode;
+  }
+  const Eigen::MatrixXd matrix = as_dense(s);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(matrix);
+  mode.converged = solver.info() == Eigen::Success;
+  if (!mode.converged) return mode;
+  Eigen::Index largest = 0;
+  solver.eigenvalues().cwiseAbs().maxCoeff(&largest);
+  set_mode(s, solver.eigenvalues()[largest], solver.eigenvectors().col(largest).normalized(), mode);
+  mode.smallest = solver.eigenvalues().real().minCoeff();
+  return mode;
+}
+
+StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& options) {
+  const SymmetricEigenpairs pairs = largest_eigenpair(s, options);
+  StiffestMode mode;
+  mode.converged = pairs.converged;
+  mode.products = pairs.products;
+  if (!pairs.converged) return mode;
+  mode.value = pairs.values[0];
+  mode.residual = pairs.residuals[0];
+  return mode;
+}
+
+// The largest entry of M^-½ A M^-½, without its sign.
+double largest_scaled_entry(const SparseMatrix& a, const Eigen::VectorXd& inverse_root) {
+  double largest = 0;
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      largest = std::max(largest, inverse_root[it.row()] * std::abs(it.value()) * inverse_root[j]);
+  return largest;
+}
+
+// With damping, or without symmetry, powers up to the fourth of the rates are formed.
+void expect_within_double_precision(const StructuralMatrices& s) {
+  const Eigen::VectorXd root = inverse_root(s.mass);
+  const double k = largest_scaled_entry(s.stiffness, root);
+  const double d = s.has_damping() ? largest_scaled_entry(s.damping, root) : 0;
+  const bool plain = s.symmetric && !s.has_damping();
+  const double least = plain ? std::numeric_limits<double>::denorm_min() : 1e-75;
+  const double most = plain ? std::numeric_limits<double>::max() : 1e75;
+  const double rate = plain ? k : std::max(std::sqrt(k), d);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(s.size());
+  const bool none =
+      largest_scaled_entry(s.stiffness, ones) == 0 && largest_scaled_entry(s.damping, ones) == 0;
+  if (none || (rate >= least && rate <= most)) return;
+  std::ostringstream message;
+  message << (plain ? "the largest mass-scaled stiffness is " : "the largest rate of motion is ") << rate
+          << (plain ? " 1/s²" : " 1/s") << ", expected " << least << " to " << most
+          << "; take a unit of time nearer to it";
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace
+
+// With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
+LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
+  if (is_diagonal(mass)) return symmetric_operator(scaled(a, inverse_root(mass)));
+  const auto factor = std::make_shared<Cholesky>(mass);
+  return {a.rows(), [factor, &a](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+            out = factor->permutationPinv() * factor->matrixU().solve(in);
+            out = factor->permutationP() * (a * out).eval();
+            factor->matrixL().solveInPlace(out);
+          }};
+}
+
+LinearOperator scaled_stiffness(const StructuralMatrices& s) { return mass_scaled(s.stiffness, s.mass); }
+
+Eigen::MatrixXd as_dense(const LinearOperator& a) {
+  Eigen::MatrixXd matrix(a.size, a.size);
+  Eigen::VectorXd column;
+  for (Eigen::Index j = 0; j < a.size; ++j) {
+    a.apply(Eigen::VectorXd::Unit(a.size, j), column);
+    matrix.col(j) = column;
+  }
+  return matrix;
+}
+
+Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a) { return 0.5 * (a + a.transpose()); }
+
+bool is_below(const StructuralMatrices& s, double sigma) {
+  return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);
+}
+
+StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+  expect_within_double_precision(s);
+  const LinearOperator op = scaled_stiffness(s);
+  StiffestMode mode = !s.symmetric              ? nonsymmetric_spectrum(op, options)
+                      : s.size() <= dense_limit ? dense_spectrum(op)
+                                                : arpack_spectrum(op, options);
+  mode.upper_bound = infinity;
+  return mode;
+}
+
+StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+  StiffestMode mode = estimated_stiffest_mode(s, options);
+  if (is_diagonal(s.mass)) {
+    const SparseMatrix matrix = scaled(s.stiffness, inverse_root(s.mass));
+    mode.gershgorin = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
+    mode.upper_bound = mode.gershgorin;
+  }
+  if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return mode;
+
+  mode.indefinite = !is_semidefinite(s.stiffness, s.mass);
+  const double scale = std::abs(mode.value);
+  if (scale == 0) return mode;
+  double gap = std::max(mode.residual, 1e-10 * scale);
+  DefinitenessProof proof({s.stiffness, s.mass, {}});
+  while (mode.value + gap < mode.upper_bound && !proof.holds(mode.value + gap, 0, 1)) gap *= 8;
+  if (mode.value + gap < mode.upper_bound) {
+    mode.upper_bound = mode.value + gap;
+    mode.bound_kind = BoundKind::inertia;
+  }
+  return mode;
+}
+
+}  // namespace springstab

@@ -1,0 +1,102 @@
+// The command line of `springstab`, assembled from its subcommands, and exit statuses.
+#include "experiments/command/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <new>
+#include <stdexcept>
+
+#include "experiments/command/interrupt.h"
+#include "experiments/command/subcommand_list.h"
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+namespace {
+
+std::vector<Subcommand> all_subcommands() {
+  return {methods_command(),    region_command(),     limits_command(),
+          simulate_command(),   complexity_command(), work_precision_command(),
+          divergence_command(), stress_command(),     figures_command()};
+}
+
+CLI::Option* add_target(CLI::App& app, const Option& option, bool* flag) {
+  return app.add_flag(option.name, *flag, option.help);
+}
+
+template <class T>
+CLI::Option* add_target(CLI::App& app, const Option& option, T* target) {
+  return app.add_option(option.name, *target, option.help);
+}
+
+void add(CLI::App& app, const Option& option) {
+  CLI::Option* added =
+      std::visit([&](auto* target) { return add_target(app, option, target); }, option.target);
+  if (option.required) added->required();
+  if (option.value) added->type_name(*option.value);
+  if (!option.known.empty()) added->check(CLI::IsMember(option.known));
+  if (!option.default_text.empty()) {
+    added->default_str(option.default_text);
+  } else if (option.default_shown) {
+    added->capture_default_str();
+  }
+}
+
+void add_common_options(CLI::App& app, CommonOptions& common) {
+  app.set_version_flag("--version", SPRINGSTAB_VERSION);
+  app.add_flag("--json", common.json, "one JSON document on stdout");
+  app.add_flag("--quiet", common.quiet, "no progress on stderr");
+  app.add_option("--seed", common.seed, "of everything random")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--threads", common.threads, "for the X-Y planes of region, divergence and figures")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer(
+      "The options above are accepted before and after a subcommand, which has its own --help.\n"
+      "Exit status: 0 done, 1 internal error, 2 wrong usage or input,\n"
+      "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
+}
+
+// What bad input gets: one line.
+int refuse(const char* reason) {
+  std::cerr << "springstab: " << reason << '\n';
+  return bad_input;
+}
+
+}  // namespace
+
+int run_command(int argc, const char* const* argv) {
+  CommonOptions common;
+  const Subcommand* chosen = nullptr;
+  CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
+  add_common_options(app, common);
+  const std::vector<Subcommand> all = all_subcommands();
+  for (const Subcommand& subcommand : all) {
+    CLI::App* added = app.add_subcommand(subcommand.name, subcommand.title);
+    for (const Option& option : subcommand.options) add(*added, option);
+    added->footer(subcommand.footer);
+    added->callback([&] { chosen = &subcommand; });
+  }
+
+  exit_on_interrupt("nothing was saved");
+  try {
+    app.parse(argc, argv);
+    return chosen->run(common);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return refuse((std::string(error.what()) + "; see springstab --help").c_str());
+  } catch (const InputError& error) {
+    return refuse(error.what());
+  } catch (const std::invalid_argument& error) {
+    return refuse(error.what());
+  } catch (const std::bad_alloc&) {
+    return refuse("not enough memory for this input");
+  } catch (const std::exception& error) {
+    std::cerr << "springstab: internal error: " << error.what() << '\n';
+    return internal_error;
+  }
+}
+
+}  // namespace springstab

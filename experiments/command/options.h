@@ -1,0 +1,26 @@
+// What every subcommand of `springstab` is told, and how it answers.
+#pragma once
+
+#include <cstdint>
+
+namespace springstab {
+
+/// Accepted by every subcommand.
+struct CommonOptions {
+  bool json = false;
+  bool quiet = false;
+  std::uint64_t seed = 1;
+  int threads = 1;
+};
+
+/// The command-line contract.
+enum ExitStatus {
+  done = 0,
+  internal_error = 1,
+  bad_input = 2,
+  no_answer = 3,
+  run_diverged = 4,
+  interrupted = 130
+};
+
+}  // namespace springstab

@@ -1,0 +1,188 @@
+#include "experiments/inputs/subject.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "experiments/inputs/grid.h"
+#include "experiments/inputs/pinned.h"
+#include "solvers/io/input_error.h"
+#include "solvers/io/matrix_file.h"
+#include "solvers/io/mesh_file.h"
+#include "solvers/scene/every_pose.h"
+
+namespace springstab {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
+                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+}
+
+SceneDescription describe(const InputOptions& options) {
+  if (is_scene_file(options.file)) {
+    if (options.spacing || !options.material.empty() || !options.pin.empty())
+      throw InputError(options.file, 0, "--spacing, --material and --pin stand in the scene file itself");
+    return read_scene_file(options.file);
+  }
+  SceneDescription description;
+  if (options.grid.empty()) {
+    if (options.spacing) throw InputError("--spacing", 0, "is for --grid only");
+    description.geometry = options.file;
+  } else {
+    Grid grid = parse_grid(options.grid, "--grid");
+    if (options.spacing) grid.spacing = *options.spacing;
+    check(grid, "--grid");
+    description.geometry = grid;
+  }
+  description.material = named_material(options.material.empty() ? "default" : options.material,
+                                        is_solid(description.geometry), "--material", 0);
+  if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
+  return description;
+}
+
+template <class Geometry>
+SpringNet make(const Geometry& geometry, const SpringMaterial& material) {
+  return make_net(geometry, material);
+}
+template <class Geometry>
+TriangleCloth make(const Geometry& geometry, const ClothMaterial& material) {
+  return make_cloth(geometry, material);
+}
+
+// Calls visit with the material of a surface.
+template <class Visit>
+void visit_cloth(const Material& material, const std::string& source, const Visit& visit) {
+  if (const auto* springs = std::get_if<SpringMaterial>(&material)) return visit(*springs);
+  if (const auto* cloth = std::get_if<ClothMaterial>(&material)) return visit(*cloth);
+  throw InputError(source, 0, "is a surface, expected a material of the model 'springs' or 'baraff-witkin'");
+}
+
+// Names the file in what the matrix library says.
+template <class Build>
+auto naming(const std::string& source, Build build) {
+  try {
+    return build();
+  } catch (const std::invalid_argument& error) {
+    throw InputError(source, 0, error.what());
+  }
+}
+
+// At rest but for `stretch` and `velocity`.
+State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
+  State<Vector> state = scene.rest_state();
+  for (Eigen::Index i = 0; i < state.x.size(); ++i) {
+    state.x[i] *= initial.stretch[i % 3];
+    state.v[i] = initial.velocity[i % 3];
+  }
+  return state;
+}
+
+}  // namespace
+
+bool is_scene_file(const std::string& path) { return ends_with(path, ".json"); }
+
+Subject::Subject(const InputOptions& options, bool any_matrices) {
+  const int given = !options.file.empty() + !options.grid.empty() + !options.stiffness.empty();
+  if (given != 1)
+    throw InputError("input", 0,
+                     std::string(given == 0 ? "nothing was given" : "more than one was given") +
+                         ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
+  if (options.stiffness.empty()) {
+    if (!options.mass.empty() || !options.damping_matrix.empty() || options.sum_duplicates)
+      throw InputError("input", 0, "--mass, --damping-matrix and --sum-duplicates go with --stiffness");
+    build_scene(describe(options));
+  } else {
+    build_matrices(options, any_matrices);
+  }
+}
+
+void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
+  if (options.spacing || !options.material.empty() || !options.pin.empty())
+    throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
+  const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
+  const auto read = [&](const std::string& path) {
+    return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
+  };
+  const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
+  std::string files = options.stiffness;
+  for (const std::string* file : {&options.mass, &options.damping_matrix})
+    if (!file->empty()) files += ", " + *file;
+  Model::operator=(naming(files, [&] {
+    const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
+    return Model(std::make_unique<MatrixSystem>(make(k, m, d)));
+  }));
+}
+
+Subject::Subject(const SceneDescription& description) { build_scene(description); }
+
+void Subject::build_scene(const SceneDescription& description) {
+  material_ = description.material;
+  if (const Grid* grid = std::get_if<Grid>(&description.geometry)) {
+    faces_ = grid_faces(*grid);
+    return visit_cloth(description.material, "--grid", [&](const auto& material) {
+      const auto cloth = make(*grid, material);
+      place(cloth, description, pinned_particles(description.pins, *grid), "--grid");
+    });
+  }
+  const std::string& path = std::get<std::string>(description.geometry);
+  const auto place_mesh = [&](const auto& cloth) {
+    place(cloth, description, pinned_particles(description.pins, *mesh_file_), path);
+  };
+  AnyMesh mesh = read_mesh(path);
+  if (auto* tets = std::get_if<TetMesh>(&mesh)) {
+    const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
+    if (!material) throw InputError(path, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
+    SolidInput input = solid_input(std::move(*tets));
+    mesh_file_ = std::move(input.file);
+    faces_ = std::move(input.faces);
+    return place_mesh(make_solid(input.mesh, *material));
+  }
+  SurfaceInput input = surface_input(std::move(std::get<Mesh>(mesh)));
+  mesh_file_ = std::move(input.file);
+  faces_ = std::move(input.faces);
+  visit_cloth(description.material, path,
+              [&](const auto& material) { place_mesh(make(input.mesh, material)); });
+}
+
+template <class Cloth>
+void Subject::place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
+                    const std::string& source) {
+  pinned_ = std::move(pinned);
+  stretch_ = description.initial.stretch;
+  if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
+  if constexpr (std::is_same_v<Cloth, TriangleCloth>)
+    if (mesh_file_) {
+      mesh_file_->rest_shape = cloth.rest_shape;
+      mesh_file_->texture_map = cloth.texture_map;
+    }
+  const RayleighDamping own{description.damping.d0, description.damping.alpha.value_or(0)};
+  auto scene = naming(description.pins.source.empty() ? source : description.pins.source,
+                      [&] { return std::make_unique<Scene>(cloth, pinned_, description.gravity, own); });
+  std::vector<Eigen::Vector3d> places;
+  for (int i : pinned_) places.push_back(stretch_.cwiseProduct(cloth.rest[i]));
+  scene->place_pinned(places);
+  State<Vector> start = start_of(*scene, description.initial);
+  Model::operator=(Model(std::move(scene), std::move(start)));
+  if (!description.damping.alpha && damping().kind != DampingModel::Kind::general) design_damping();
+}
+
+std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
+  std::vector<Eigen::Vector3d> particles = scene()->positions(x);
+  return mesh_file_ ? file_vertices(*mesh_file_, particles, stretch_) : particles;
+}
+
+std::optional<StructuralMatrices> Subject::every_pose() const {
+  if (!net_) return std::nullopt;
+  return springstab::every_pose(*net_, pinned_, {damping().d0, damping().alpha});
+}
+
+void expect_designable(const Model& model) {
+  if (!model.scene())
+    throw InputError("--damping", 0, "'designed' is for scenes, expected 'own' for matrices");
+  if (model.damping().kind == DampingModel::Kind::general)
+    throw InputError("--damping", 0,
+                     "'designed' is not possible beside the springs' own damping, expected 'own'");
+}
+
+}  // namespace springstab

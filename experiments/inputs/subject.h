@@ -1,0 +1,71 @@
+// What a command works on: the INPUT of the command line, resolved. Either a scene (from a file, a mesh or a
+// grid) or a system of matrices.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/model.h"
+#include "experiments/inputs/mesh_input.h"
+#include "experiments/inputs/scene_description.h"
+
+namespace springstab {
+
+/// INPUT as typed; empty strings were not given. Exactly one of file, grid and stiffness must be.
+struct InputOptions {
+  std::string file;               // SCENE.json or a mesh
+  std::string grid;               // "NxM"
+  std::optional<double> spacing;  // [m], with grid
+  std::string material, pin;      // with grid or a mesh
+  std::string stiffness, mass, damping_matrix;
+  bool sum_duplicates = false;  // of these matrices' entries
+};
+
+/// A model, and where it came from.
+class Subject : public Model {
+ public:
+  /// Throws InputError or std::invalid_argument when the input is unusable.
+  /// Matrices must be symmetric unless `any_matrices` (prepare_nonsymmetric).
+  explicit Subject(const InputOptions& options, bool any_matrices = false);
+  explicit Subject(const SceneDescription& description);
+
+  /// Faces for pictures, those of the mesh file (of a solid its surface) or of a grid's cells: numbers of
+  /// vertices(); none for matrices.
+  const Faces& faces() const { return faces_; }
+
+  /// Of a scene, where the vertices of faces() are: the particles, or all vertices of the mesh file in its
+  /// order. One that was merged is where its particle is; an unreferenced one stays where it started.
+  std::vector<Eigen::Vector3d> vertices(const Vector& x) const;
+
+  /// Where the scene is made of a mesh file.
+  const std::optional<MeshFile>& mesh_file() const { return mesh_file_; }
+
+  /// What a scene is made of; nothing for matrices.
+  const std::optional<Material>& material() const { return material_; }
+
+  /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
+  std::optional<StructuralMatrices> every_pose() const;
+
+ private:
+  void build_scene(const SceneDescription& description);
+  template <class Cloth>
+  void place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
+             const std::string& source);
+  void build_matrices(const InputOptions& options, bool any_matrices);
+
+  Faces faces_;
+  std::optional<MeshFile> mesh_file_;
+  std::optional<SpringNet> net_;  // of a scene of springs
+  std::vector<int> pinned_;
+  std::optional<Material> material_;
+  Eigen::Vector3d stretch_{1, 1, 1};
+};
+
+/// Throws InputError where alpha cannot be left to the design.
+void expect_designable(const Model& model);
+
+/// Whether a file is a scene, by its suffix.
+bool is_scene_file(const std::string& path);
+
+}  // namespace springstab

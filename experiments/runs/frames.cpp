@@ -1,0 +1,60 @@
+#include "experiments/runs/frames.h"
+
+#include <filesystem>
+
+#include "experiments/command/output.h"
+#include "solvers/io/input_error.h"
+
+namespace springstab {
+namespace {
+
+void write_obj(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<std::vector<int>>& faces) {
+  for (const Eigen::Vector3d& p : positions) out << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+  for (const std::vector<int>& face : faces) {
+    out << 'f';
+    for (int i : face) out << ' ' << i + 1;
+    out << '\n';
+  }
+}
+
+void write_vtk(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<std::vector<int>>& faces) {
+  out << "# vtk DataFile Version 3.0\nspringstab\nASCII\nDATASET POLYDATA\nPOINTS " << positions.size()
+      << " double\n";
+  for (const Eigen::Vector3d& p : positions) out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
+  std::size_t numbers = 0;
+  for (const std::vector<int>& face : faces) numbers += face.size() + 1;
+  out << "POLYGONS " << faces.size() << ' ' << numbers << '\n';
+  for (const std::vector<int>& face : faces) {
+    out << face.size();
+    for (int i : face) out << ' ' << i;
+    out << '\n';
+  }
+}
+
+}  // namespace
+
+std::string frame_path(const std::string& folder, const std::string& format, int frame) {
+  return folder + text("/frame_%05d.%s", frame, format.c_str());
+}
+
+void expect_frame(const std::string& folder, const std::string& format, int frame) {
+  const std::string path = frame_path(folder, format, frame);
+  if (!std::filesystem::exists(path))
+    throw InputError(path, 0, "is missing, expected all frames of the run; without --resume it starts anew");
+}
+
+void write_frame(const std::string& folder, const std::string& format, int frame,
+                 const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces) {
+  OutputFile file(frame_path(folder, format, frame));
+  (format == "vtk" ? write_vtk : write_obj)(file.stream(), positions, faces);
+  file.commit();
+}
+
+void remove_frame(const std::string& folder, const std::string& format, int frame) {
+  std::error_code ignored;
+  std::filesystem::remove(frame_path(folder, format, frame), ignored);
+}
+
+}  // namespace springstab

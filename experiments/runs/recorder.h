@@ -1,0 +1,45 @@
+// What a run of `simulate` writes as it goes: frames of a scene, or rows of a CSV file for matrices.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/command/output.h"
+#include "experiments/inputs/subject.h"
+#include "experiments/simulate_options.h"
+
+namespace springstab {
+
+/// Evenly spaced in time; nothing without an output folder.
+class Recorder {
+ public:
+  /// Goes on after what another one kept(), if that is not null.
+  Recorder(Subject& subject, const SimulateOptions& options, const Json& kept);
+
+  /// What lies after t is taken back first: a divergence was undone.
+  void record(double t, const State<Vector>& state);
+  /// Where it is; what was recorded is in the system's hands by then.
+  Json kept();
+  void finish();
+
+  /// The first frame beyond this run's that is there, of an earlier one; empty if none is.
+  std::string earlier() const;
+  int written() const { return static_cast<int>(frames_.size()); }
+
+ private:
+  // A hair early: the time of a step is a rounded sum.
+  double next_time() const { return options_.duration * due_ / options_.frames * (1 - 1e-9); }
+
+  Subject& subject_;
+  const SimulateOptions& options_;
+  std::optional<OutputFile> csv_;
+  struct Frame {
+    double t;  // [s]
+    int due;
+  };
+  std::vector<Frame> frames_;
+  int due_ = 0, most_ = 0;
+};
+
+}  // namespace springstab

@@ -56,9 +56,12 @@ struct MethodLimits {
   std::optional<double> h_certified;  // proved stable, at most h_max
   Proof proof = Proof::none;          // of h_certified
   std::string_view unproved{};        // why there is none
-  std::optional<double> recommended;  // with the safety factor; absent also where unlimited
+  std::optional<double> recommended;  // with the safety factor, at most h_certified; absent also where unlimited
   std::optional<DampingDesign> designed;
 };
+
+/// Takes the step to use down to h_max/√F, the limit when time runs √F times faster, and to what is proved.
+void keep_margin(double safety, MethodLimits& limits);
 
 /// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method
 /// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);

@@ -21,7 +21,7 @@ using Cholesky = Eigen::SimplicialLLT<SparseMatrix>;
 constexpr Eigen::Index nonsymmetric_limit = 400;
 
 // Of a residual beside the value: what is more is rounding or a search that went astray, no eigenvalue.
-constexpr double accurate = 1e-6;
+constexpr double least_accuracy = 1e-6;
 
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
 Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
@@ -82,7 +82,7 @@ StiffestMode dominant_mode(const LinearOperator& s, ArpackOptions options) {
     if (!found.converged) continue;
     StiffestMode mode;
     set_mode(s, found.values[0], found.vectors.col(0), mode);
-    const bool agree = std::abs(mode.value - best.value) <= accurate * mode.value;
+    const bool agree = std::abs(mode.value - best.value) <= least_accuracy * mode.value;
     if (mode.value > best.value) best.value = mode.value, best.residual = mode.residual;
     best.converged = start > 0 && agree;
   }
@@ -105,7 +105,7 @@ StiffestMode nonsymmetric_spectrum(const LinearOperator& s, const ArpackOptions&
     set_mode(s, solver.eigenvalues()[largest], solver.eigenvectors().col(largest).normalized(), mode);
     mode.smallest = solver.eigenvalues().real().minCoeff();
   }
-  mode.converged = mode.converged && mode.residual <= accurate * mode.value;
+  mode.converged = mode.converged && mode.residual <= least_accuracy * mode.value;
   return mode;
 }
 

@@ -83,7 +83,7 @@ void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, d
   if (linear.own_damping()) add_product("blocks of D", *linear.own_damping());
   if (!solves) return;
   SolveReport report;
-  const double seconds = seconds_each([&] { report = linear.solve_shifted(h, at.x, out); });
+  const double seconds = seconds_each([&] { report = linear.solve_shifted({1, h, h * h}, at.x, out); });
   if (scene.solver().kind == SolverKind::cholesky) {
     parts.push_back(part("Cholesky factorization", scene.size(), "solve", seconds, 1));
   } else {
@@ -144,7 +144,7 @@ Json explain(Subject& subject, std::string_view method, const StepPlan& plan, co
   if (counts.hessian_assemblies > 0) {
     add_assembly(parts, scene, start, a_step(counts.hessian_assemblies));
     add_algebra(parts, scene, start, plan.h, a_step(counts.block_products - counts.cg_iterations),
-                find_method(method).implicit, a_step(counts.cg_iterations));
+                Method(method).info().implicit, a_step(counts.cg_iterations));
   }
   return {{"particles", scene.particles()},
           {"pinned", scene.particles() - scene.free_particles()},

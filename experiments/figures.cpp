@@ -3,8 +3,10 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
 #include "experiments/command/interrupt.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/studies/figure_list.h"
 #include "solvers/io/input_error.h"
 
@@ -37,8 +39,6 @@ std::vector<Figure> chosen_figures(const std::vector<std::string>& names) {
   return chosen;
 }
 
-}  // namespace
-
 int run_figures(const CommonOptions& common, const FiguresOptions& options) {
   const std::vector<Figure> figures = chosen_figures(options.names);
   if (!std::filesystem::is_regular_file(options.plots + "/region.gp"))
@@ -64,6 +64,26 @@ int run_figures(const CommonOptions& common, const FiguresOptions& options) {
   }
   if (common.json) print_json(Json{{"figures", list}});
   return all_hold ? done : no_answer;
+}
+
+}  // namespace
+
+Subcommand figures_command() {
+  const auto o = std::make_shared<FiguresOptions>();
+  return {.name = "figures",
+          .title = "Computes and plots the figures (needs gnuplot)",
+          .footer = "example: springstab figures 1 2 --output figures",
+          .options = {Option("NAMES", &o->names,
+                             "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs, "
+                             "stress or a method's "
+                             "name (default: all)")
+                          .shown_as(""),
+                      Option("--quick", &o->quick, "fewer simulated cells, smaller cloths"),
+                      plots_option(o->plots),
+                      Option("--output", &o->output, "folder for the figures and their data")
+                          .shown_as("DIR")
+                          .with_default()},
+          .run = [o](const CommonOptions& common) { return run_figures(common, *o); }};
 }
 
 }  // namespace springstab

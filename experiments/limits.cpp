@@ -7,9 +7,9 @@
 
 #include "analysis/limits/general_damping.h"
 #include "analysis/limits/transient_growth.h"
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/mesh_report.h"
+#include "experiments/limits_options.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -200,7 +200,7 @@ void print(std::string_view method, const MethodLimits& l) {
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   if (!(options.max_step > 0 && std::isfinite(options.max_step)))
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
-  if (!options.method.empty()) find_method(options.method);
+  if (!options.method.empty()) Method{options.method};
   Subject subject(options.input, true);
   print_mesh_notes(subject);
   const StructuralMatrices structure = subject.structure(subject.initial_state(common.seed));
@@ -214,18 +214,18 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     general_damping.emplace(structure, k0, damping, options.safety, true, ArpackOptions{.seed = common.seed});
   const std::optional<StructuralMatrices> every_pose = subject.every_pose();
   int status = k0.converged ? done : no_answer;
-  for (const MethodInfo& info : all_methods()) {
-    if (!options.method.empty() && info.name != options.method) continue;
+  for (const Method& method : all_methods()) {
+    if (!options.method.empty() && method.name() != options.method) continue;
     MethodLimits limits =
-        general ? general_damping->limits(info.name) : method_limits(info.name, k0, damping, options.safety);
+        general ? general_damping->limits(method) : method_limits(method, k0, damping, options.safety);
     std::optional<double> h_every_pose;
-    if (const auto condition = stability_region(info.name).exact_condition(); condition && every_pose)
+    if (const auto condition = stability_region(method).exact_condition(); condition && every_pose)
       h_every_pose = proved_limit(*every_pose, *condition, {.seed = common.seed});
     if (limits.status == LimitStatus::unlimited) limits.recommended = options.max_step;
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
-    const auto growth = general ? std::nullopt : growth_at_recommended(info.name, limits, k0, damping);
-    rows.push_back({info.name, limits, h_every_pose, growth});
+    const auto growth = general ? std::nullopt : growth_at_recommended(method, limits, k0, damping);
+    rows.push_back({method.name(), limits, h_every_pose, growth});
   }
 
   const std::optional<double> growth_rate = general ? general_damping->growth() : std::nullopt;

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <iostream>
 
+#include "experiments/command/command_line.h"
 #include "experiments/command/options.h"
 
 int main(int argc, char** argv) {

@@ -1,11 +1,13 @@
 // `springstab methods`: what each method is, all of it computed from its step.
+#include <cmath>
 #include <iostream>
 
 #include "analysis/regions/stability_region.h"
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
+#include "experiments/command/subcommand_list.h"
 #include "solvers/counting.h"
 #include "solvers/linear/matrix_system.h"
+#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -17,34 +19,32 @@ long force_evaluations(std::string_view method) {
   MatrixSystem oscillator(prepare(one));
   CountingSystem counting(oscillator);
   State<Vector> state{Vector::Ones(1), Vector::Zero(1)};
-  make_stepper(method)->step(counting, 0.1, state);
+  Method(method).stepper()->step(counting, 0.1, state);
   return counting.counts().force_evaluations;
 }
-
-}  // namespace
 
 int run_methods(const CommonOptions& common) {
   Json list = Json::array();
   if (!common.json)
     std::cout << text("%-26s %5s %6s %9s %14s %14s %9s %12s %12s\n", "method", "order", "forces", "implicit",
                       "Y_max", "at X", "attained", "real axis", "imag. axis");
-  for (const MethodInfo& info : all_methods()) {
-    const RegionConstants& c = stability_region(info.name).constants();
+  for (const Method& each : all_methods()) {
+    const RegionConstants& c = stability_region(each).constants();
     const bool bounded = std::isfinite(c.y_max);
-    list.push_back({{"name", info.name},
-                    {"title", info.title},
-                    {"order", info.order},
-                    {"force_evaluations", force_evaluations(info.name)},
-                    {"implicit", info.implicit},
+    list.push_back({{"name", each.name()},
+                    {"title", each.info().title},
+                    {"order", each.info().order},
+                    {"force_evaluations", force_evaluations(each.name())},
+                    {"implicit", each.info().implicit},
                     {"y_max", number(c.y_max)},
                     {"x_at_y_max", bounded ? number(c.x_at_y_max) : Json()},
                     {"y_max_attained", c.y_max_attained},
                     {"real_interval", number(c.real_interval)},
                     {"imaginary_interval", number(c.imaginary_interval)}});
     if (!common.json)
-      std::cout << text("%-26s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n",
-                        std::string(info.name).c_str(), info.order, force_evaluations(info.name),
-                        info.implicit ? "yes" : "no", c.y_max,
+      std::cout << text("%-26s %5d %6ld %9s %14.11g %14s %9s %12.10g %12.10g\n", each.name().c_str(),
+                        each.info().order, force_evaluations(each.name()),
+                        each.info().implicit ? "yes" : "no", c.y_max,
                         bounded ? text("%.11g", c.x_at_y_max).c_str() : "-", c.y_max_attained ? "yes" : "no",
                         c.real_interval, c.imaginary_interval);
   }
@@ -56,6 +56,20 @@ int run_methods(const CommonOptions& common) {
                  "Euler without it: the damping that stabilizes it damps nothing.\n";
   }
   return done;
+}
+
+}  // namespace
+
+Subcommand methods_command() {
+  return {.name = "methods",
+          .title = "The methods and their constants",
+          .footer =
+              "Y_max: largest stable Y = h^2 k over all damping, and the X = h d where it is; real axis: "
+              "largest\n"
+              "stable X at Y = 0; imaginary axis: largest stable h*sqrt(k) without damping.\n\n"
+              "example: springstab methods --json",
+          .options = {},
+          .run = run_methods};
 }
 
 }  // namespace springstab

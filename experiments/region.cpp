@@ -7,8 +7,9 @@
 #include <set>
 
 #include "analysis/regions/amplification.h"
-#include "experiments/command/options.h"
+#include "experiments/command/enum_name.h"
 #include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/studies/parallel.h"
 #include "solvers/io/input_error.h"
 
@@ -18,6 +19,15 @@ namespace {
 constexpr double neutral_band = 1e-9;  // |ρ - 1| at most this counts as neutral
 constexpr long largest_grid = 100'000'000;
 constexpr int largest_side = 10'000;
+
+struct RegionOptions {
+  std::string method;
+  std::string x, y;  // "A:B", empty for the region's own extent
+  int nx = 400, ny = 400;
+  std::string raster, boundary, pieces, cells;  // files to write, empty for none
+  int simulated_cells = 0;                      // per side; 0 for none
+  long cell_steps = 2000;
+};
 
 struct CellCentres {
   std::vector<double> x, y;
@@ -35,17 +45,11 @@ struct CellCentres {
 };
 
 const char* name(Bound bound) {
-  switch (bound) {
-    case Bound::complex_pair:
-      return "complex_pair";
-    case Bound::plus_one:
-      return "lambda=1";
-    case Bound::minus_one:
-      return "lambda=-1";
-    case Bound::window:
-      break;
-  }
-  return "window";
+  static constexpr std::pair<Bound, const char*> names[] = {{Bound::complex_pair, "complex_pair"},
+                                                            {Bound::plus_one, "lambda=1"},
+                                                            {Bound::minus_one, "lambda=-1"},
+                                                            {Bound::window, "window"}};
+  return name_in(names, bound);
 }
 
 // "A:B" as a range of an axis; keeps what is there when nothing was given.
@@ -166,7 +170,7 @@ CellComparison compare_cells(std::string_view method, const CellGrid& grid, long
   return result;
 }
 
-int run_region(const CommonOptions& common, const RegionOptions& options) {
+static int run_region(const CommonOptions& common, const RegionOptions& options) {
   const StabilityRegion& region = stability_region(options.method);
   CellGrid grid{region.natural_window(0.1), options.nx, options.ny};
   parse_range(options.x, "--x", grid.window.x_min, grid.window.x_max);
@@ -232,6 +236,33 @@ int run_region(const CommonOptions& common, const RegionOptions& options) {
         s["disagreements"].get<long>(), s["outside_band"].get<long>(), s["band"].get<double>());
   }
   return done;
+}
+
+Subcommand region_command() {
+  const auto o = std::make_shared<RegionOptions>();
+  return {
+      .name = "region",
+      .title = "The stable region of a method in the X-Y plane (X = hd, Y = h^2 k)",
+      .footer =
+          "All quantities are dimensionless. Cells count as neutral where |rho - 1| <= 1e-9.\n\n"
+          "example: springstab region rk4 --x -0.6:6 --y 0:9 --boundary rk4.csv",
+      .options =
+          {Option("METHOD", &o->method, "one of " + method_names()).needed().shown_as(""),
+           Option("--x", &o->x, "range of X (default: the region's own extent)").shown_as("A:B"),
+           Option("--y", &o->y, "range of Y").shown_as("A:B"),
+           Option("--nx", &o->nx, "cells along X").with_default(),
+           Option("--ny", &o->ny, "cells along Y").with_default(),
+           Option("--raster", &o->raster, "write x,y,spectral_radius at cell centres").shown_as("F.csv"),
+           Option("--boundary", &o->boundary,
+                  "write the exact boundary: condition,x,y, a blank line ends an arc")
+               .shown_as("F.csv"),
+           Option("--pieces", &o->pieces, "write the region to fill: x,y_lower,y_upper").shown_as("F.csv"),
+           Option("--simulate", &o->simulated_cells, "simulate N x N cells and compare with theory")
+               .shown_as("N"),
+           Option("--cells", &o->cells, "write the simulated cells: x,y,spectral_radius,diverged")
+               .shown_as("F.csv"),
+           Option("--steps", &o->cell_steps, "steps of each simulated cell").with_default()},
+      .run = [o](const CommonOptions& common) { return run_region(common, *o); }};
 }
 
 }  // namespace springstab

@@ -171,7 +171,7 @@ const char* outcome(StepStatus status) {
 
 int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   check(options);
-  find_method(options.method);
+  const Method method = options.method;
   Subject subject(options.input);
   print_mesh_notes(subject);
   if (options.designed_damping) subject.design_damping();
@@ -218,7 +218,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   Progress progress("simulating", common.quiet);
   const StopOnInterrupt interrupt;
   const SimulationResult result = resume_simulation(
-      counted, *make_stepper(options.method), std::move(begin.run), watch, state,
+      counted, *method.stepper(), std::move(begin.run), watch, state,
       [&](const RunSoFar& so_far, const State<Vector>& s) {
         recorder.record(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
@@ -251,15 +251,14 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
               {"diverged_at", diverged ? number(result.failed_at) : Json()},
               {"grows", grows},
               {"last_step", chooser.present_step()},
-              {"last_relinearize",
-               find_method(options.method).linearized ? Json(chooser.present_relinearize()) : Json()},
+              {"last_relinearize", method.info().linearized ? Json(chooser.present_relinearize()) : Json()},
               {"cpu_seconds", cpu},
               {"counts",
                {{"force_evaluations", counts.force_evaluations},
                 {"hessian_assemblies", counts.hessian_assemblies},
                 {"block_products", counts.block_products},
                 {"cg_iterations", counts.cg_iterations},
-                {"relinearizations", find_method(options.method).linearized ? counts.hessian_assemblies : 0},
+                {"relinearizations", method.info().linearized ? counts.hessian_assemblies : 0},
                 {"rollbacks", chooser.rollbacks()},
                 {"halved_steps", chooser.halved_steps()}}},
               {"energy", {{"initial", number(energy_before)}, {"final", number(energy_after)}}},
@@ -291,7 +290,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
     if (chooser.rollbacks() > 0)
       std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s%s\n",
                         chooser.rollbacks(), chooser.present_step(),
-                        find_method(options.method).linearized
+                        method.info().linearized
                             ? text(", linearized every %.6g s", chooser.present_relinearize()).c_str()
                             : "");
     if (chooser.halved_steps() > 0)

@@ -31,7 +31,7 @@ StepChooser::StepChooser(Subject& subject, const CommonOptions& common, const Si
     : subject_(subject),
       common_(common),
       options_(options),
-      method_(find_method(options.method)),
+      method_(options.method),
       designed_(subject.damping().kind == DampingModel::Kind::designed),
       relinearize_(options.relinearize) {}
 
@@ -43,7 +43,7 @@ MethodLimits StepChooser::limits(const StiffestMode& k0, const State<Vector>& st
   DampingModel damping = subject_.damping();
   if (designed_) damping.kind = DampingModel::Kind::designed;
   if (damping.kind != DampingModel::Kind::general)
-    return method_limits(options_.method, k0, damping, options_.safety);
+    return method_limits(method_, k0, damping, options_.safety);
   const StructuralMatrices structure = subject_.structure(state);
   return GeneralDamping(structure, k0, damping, options_.safety, false, {.seed = common_.seed})
       .limits(options_.method);
@@ -69,14 +69,14 @@ StepPlan StepChooser::plan(double largest_step, double duration) {
   const auto count = [](double total, double part) {
     return std::max(1.0, std::ceil(total / part * (1 - 1e-12)));
   };
-  const double linearizations = method_.linearized ? count(duration, relinearize_) : 1;
+  const double linearizations = method_.info().linearized ? count(duration, relinearize_) : 1;
   const double steps = count(duration / linearizations, largest_step);
   if (linearizations * steps > 1e15)
     throw InputError("--duration", 0,
                      text("%g s would take %.3g steps of %.3g s, expected at most 1e15", duration,
                           linearizations * steps, duration / linearizations / steps));
   StepPlan result{duration / linearizations / steps, static_cast<long>(linearizations * steps)};
-  if (method_.linearized) result.steps_per_linearization = static_cast<long>(steps);
+  if (method_.info().linearized) result.steps_per_linearization = static_cast<long>(steps);
   if (designed_)
     subject_.set_alpha(designed_alpha(stability_region(options_.method), result.h, subject_.damping().d0));
   h_ = result.h;
@@ -117,9 +117,9 @@ EnergyWatch StepChooser::watch(const State<Vector>& start) {
 std::optional<StepPlan> StepChooser::after_divergence(double time, const State<Vector>& state) {
   if (options_.step || !subject_.scene()) return std::nullopt;
   double step = recommended(k0_at(state, quick_tolerance), state).value_or(h_ / 2);
-  if (step >= h_ * (1 - 1e-9)) step = method_.linearized && relinearize_ > h_ ? h_ : h_ / 2;
+  if (step >= h_ * (1 - 1e-9)) step = method_.info().linearized && relinearize_ > h_ ? h_ : h_ / 2;
   if (step < least_step_) return std::nullopt;
-  if (method_.linearized) relinearize_ = std::max(relinearize_ / 2, step);
+  if (method_.info().linearized) relinearize_ = std::max(relinearize_ / 2, step);
   ++rollbacks_;
   return plan(step, options_.duration - time);
 }

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/subject.h"
+#include "experiments/simulate_options.h"
 #include "solvers/simulation.h"
 
 namespace springstab {
@@ -62,7 +62,7 @@ class StepChooser {
   Subject& subject_;
   const CommonOptions& common_;
   const SimulateOptions& options_;
-  const MethodInfo& method_;
+  Method method_;
   bool designed_;
   std::string reason_;
   double h_ = 0, least_step_ = 0;  // [s]

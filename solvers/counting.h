@@ -48,8 +48,8 @@ class CountingSystem final : public System {
       ++counts.block_products;
       target->damping_times(u, out);
     }
-    SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override {
-      const SolveReport report = target->solve_shifted(h, rhs, out);
+    SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override {
+      const SolveReport report = target->solve_shifted(shift, rhs, out);
       counts.cg_iterations += report.iterations;
       counts.block_products += report.products;
       return report;

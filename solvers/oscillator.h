@@ -17,8 +17,8 @@ struct Oscillator {
   void acceleration(const V& x, const V& v, V& a) const { a = -(k * x) - d * v; }
   void stiffness_times(const V& u, V& out) const { out = k * u; }
   void damping_times(const V& u, V& out) const { out = d * u; }
-  SolveReport solve_shifted(double h, const V& rhs, V& out) const {
-    out = rhs / (1.0 + h * d + (h * h) * k);
+  SolveReport solve_shifted(const Shift& shift, const V& rhs, V& out) const {
+    out = rhs / (shift.mass + shift.damping * d + shift.stiffness * k);
     return {};
   }
   const Oscillator& linearized(const V&, const V&) const { return *this; }

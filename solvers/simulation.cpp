@@ -24,10 +24,11 @@ struct Checkpoint {
   State<Vector> state;
   long steps = 0;
   double time = 0;
+  double h = 0;  // for which the state carries what it does
 
-  void keep(const State<Vector>& good, const SimulationResult& so_far) {  // into the memory it has
-    state.x = good.x;
-    state.v = good.v;
+  void keep(const State<Vector>& good, double h_of_good, const SimulationResult& so_far) {
+    state = good;  // into the memory it has
+    h = h_of_good;
     steps = so_far.steps;
     time = so_far.time;
   }
@@ -59,13 +60,15 @@ RunSoFar start_of(const StepPlan& plan) {
 
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
+  stepper.start(system, plan.h, state);
   return resume_simulation(system, stepper, start_of(plan), watch, state, observe, policy);
 }
 
 SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
                                    State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
   std::vector<Stage>& stages = run.stages;
-  Checkpoint checkpoint{state, run.steps, run.time};
+  double h = stages.back().plan.h;  // for which the state carries what it does
+  Checkpoint checkpoint{state, run.steps, run.time, h};
   stepper.restart(stages.back().plan.steps_per_linearization);
   if (observe && !observe(run, state)) return static_cast<SimulationResult&&>(run);
   const auto has_diverged = [&](double t) {
@@ -83,7 +86,9 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
       continue;
     }
     const double t = time_of(stage, stage.done + 1);
-    run.status = stepper.step(system, stage.plan.h, state);
+    if (h != stage.plan.h) stepper.change_step(system, h, stage.plan.h, state);
+    h = stage.plan.h;
+    run.status = stepper.step(system, h, state);
     if (run.status == StepStatus::done) {
       ++stage.done;
       run.at_checkpoint = at_checkpoint(stage);
@@ -92,7 +97,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
       } else {
         ++run.steps;
         run.time = t;
-        if (run.at_checkpoint) checkpoint.keep(state, run);
+        if (run.at_checkpoint) checkpoint.keep(state, h, run);
         if (observe && !observe(run, state)) break;
         continue;
       }
@@ -101,6 +106,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
     const bool diverged = run.status == StepStatus::diverged;
     if (diverged) {
       state = checkpoint.state;
+      h = checkpoint.h;
       run.steps = checkpoint.steps;
       run.time = checkpoint.time;
     }

@@ -80,15 +80,16 @@ using Observer = std::function<bool(const RunSoFar& so_far, const State<Vector>&
 using StepPolicy = std::function<std::optional<StepPlan>(const SimulationResult& so_far,
                                                          const State<Vector>& state, const StepPlan& failed)>;
 
-/// Carries out the plan from `state`. Checkpoints are taken at whole linearizations, at least 16 steps apart,
-/// and at the end. After a divergence the run is back at the last of them (paper §4, 2.3: the latest result
-/// is discarded): there it ends, or goes on, linearized anew, with what the policy plans. A failed solve
-/// leaves the state as it was before the step. Neither non-finite nor implausible states reach the observer.
+/// Carries out the plan from the x and v of `state`. Checkpoints are taken at whole linearizations, at least
+/// 16 steps apart, and at the end. After a divergence the run is back at the last of them (paper §4, 2.3: the
+/// latest result is discarded): there it ends, or goes on, linearized anew, with what the policy plans. A
+/// failed solve leaves the state as it was before the step. Where h changes, the stepper is told. Neither
+/// non-finite nor implausible states reach the observer.
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {});
 
-/// The same from a checkpoint that an observer saw, with the state it saw there: goes on to the same bits as
-/// if the run had not been interrupted, if system and policy are as they were.
+/// The same from a checkpoint that an observer saw, with the state it saw there and all it carries: goes on
+/// to the same bits as if the run had not been interrupted, if system and policy are as they were.
 SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
                                    State<Vector>& state, const Observer& observe = {},
                                    const StepPolicy& policy = {});

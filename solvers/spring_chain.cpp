@@ -26,7 +26,7 @@ SpringChain::SpringChain(const std::vector<double>& mass, const std::vector<doub
 
 void SpringChain::set_damping(const RayleighDamping& damping) {
   damping_ = damping;
-  factorized_step_ = std::numeric_limits<double>::quiet_NaN();
+  factorized_.reset();
 }
 
 StructuralMatrices SpringChain::matrices() const {
@@ -74,11 +74,12 @@ void SpringChain::damping_times(const Vector& u, Vector& out) {
   out = damping_.alpha * out + damping_.d0 * u;
 }
 
-StepStatus SpringChain::factorize(double h) {
-  if (h == factorized_step_) return StepStatus::done;
-  factorized_step_ = std::numeric_limits<double>::quiet_NaN();
+StepStatus SpringChain::factorize(const Shift& shift) {
+  if (shift == factorized_) return StepStatus::done;
+  factorized_.reset();
   const Eigen::Index n = size();
-  const double of_mass = 1 + h * damping_.d0, of_stiffness = h * damping_.alpha + h * h;
+  const double of_mass = shift.mass + shift.damping * damping_.d0,
+               of_stiffness = shift.damping * damping_.alpha + shift.stiffness;
   pivot_inverse_.resize(n);
   factor_.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -89,12 +90,12 @@ StepStatus SpringChain::factorize(double h) {
     if (!(pivot > 0)) return StepStatus::not_positive_definite;
     pivot_inverse_[i] = 1 / pivot;
   }
-  factorized_step_ = h;
+  factorized_ = shift;
   return StepStatus::done;
 }
 
-SolveReport SpringChain::solve_shifted(double h, const Vector& rhs, Vector& out) {
-  SolveReport report{factorize(h), 0, 1};
+SolveReport SpringChain::solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) {
+  SolveReport report{factorize(shift), 0, 1};
   if (report.status != StepStatus::done) return report;
   const Eigen::Index n = size();
   out = mass_.cwiseProduct(rhs);

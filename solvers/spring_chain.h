@@ -2,7 +2,7 @@
 // from rest. Tridiagonal, so that everything about it is solved directly.
 #pragma once
 
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "solvers/linear/block_linear_system.h"
@@ -27,21 +27,21 @@ class SpringChain final : public LinearSystem {
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
-  /// By an LDLᵀ factorization, which is kept while h stays the same. It passes over the chain twice and is
-  /// reported as one product.
-  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override;
+  /// By an LDLᵀ factorization, which is kept while the shift stays the same. It passes over the chain twice
+  /// and is reported as one product.
+  SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 
  private:
   void stretch(const Vector& u);
-  StepStatus factorize(double h);
+  StepStatus factorize(const Shift& shift);
 
   Vector mass_, inverse_mass_, stiffness_;
   RayleighDamping damping_;
   Vector tension_, sum_;           // of the springs; x + alpha v
-  Vector pivot_inverse_, factor_;  // of M(1 + h d0) + (h alpha + h²) K
-  double factorized_step_ = std::numeric_limits<double>::quiet_NaN();
+  Vector pivot_inverse_, factor_;  // of (m + d d0) M + (d alpha + k) K
+  std::optional<Shift> factorized_;
 };
 
 }  // namespace springstab

@@ -6,21 +6,24 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace springstab {
 
-/// Position [m] and velocity [m/s], each with one entry per unknown.
+/// Position [m] and velocity [m/s], each with one entry per unknown, and what the method carries beyond them:
+/// nothing, or vectors of the same shape whose meaning is the method's.
 template <class V>
 struct State {
   V x;
   V v;
+  std::vector<V> memory{};
 };
 
 /// Outcome of one step. The state has advanced only if `done`; otherwise it is untouched.
 enum class StepStatus {
   done,
   diverged,               // the new state is not finite
-  not_positive_definite,  // 1 + hD' + h²K' has a direction of negative curvature: shorten h (paper §5.2)
+  not_positive_definite,  // the matrix of an implicit step has a direction of negative curvature: shorten h
   not_converged,          // the linear solve used up its iterations
 };
 
@@ -39,6 +42,16 @@ StepStatus commit(State<V>& state, V& x_new, V& v_new) {
   std::swap(state.x, x_new);
   std::swap(state.v, v_new);
   return StepStatus::done;
+}
+
+/// The same for a method that carries more.
+template <class V>
+StepStatus commit(State<V>& state, V& x_new, V& v_new, std::vector<V>& memory_new) {
+  for (const V& u : memory_new)
+    if (!all_finite(u)) return StepStatus::diverged;
+  const StepStatus status = commit(state, x_new, v_new);
+  if (status == StepStatus::done) std::swap(state.memory, memory_new);
+  return status;
 }
 
 }  // namespace springstab

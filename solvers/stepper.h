@@ -1,9 +1,12 @@
-// The methods by name, for systems chosen at run time.
+// A described method at work on systems that are chosen at run time:
+//
+//     const auto stepper = make_stepper(Rk4());
+//     stepper->start(system, h, state);
+//     while (time < end && stepper->step(system, h, state) == StepStatus::done) time += h;
 #pragma once
 
 #include <memory>
-#include <span>
-#include <string_view>
+#include <stdexcept>
 
 #include "solvers/methods/method_info.h"
 #include "solvers/system.h"
@@ -15,22 +18,68 @@ namespace springstab {
 class Stepper {
  public:
   virtual ~Stepper() = default;
+  /// Makes state.memory what the method carries, for steps of h from here on.
+  virtual void start(System& system, double h, State<Vector>& state) = 0;
   /// Advances the state by h, or says why it did not and leaves the state as it was.
   virtual StepStatus step(System& system, double h, State<Vector>& state) = 0;
+  /// After steps of h_old, before the first of h_new: what is carried serves that.
+  virtual void change_step(System& system, double h_old, double h_new, State<Vector>& state) = 0;
   /// Drops what is kept from step to step (a linearization), as after going back to an earlier state. In a
   /// linearized method one linearization serves `steps_per_linearization` >= 1 steps from now on; the others
   /// have no use for the number.
   virtual void restart(long steps_per_linearization) = 0;
 };
 
-/// All methods, in the order of the list.
-std::span<const MethodInfo> all_methods();
+/// Makes state.memory the `memory` vectors that the steps carry from this x and v on.
+template <class Steps, class AnySystem, class V>
+void start_steps(Steps& steps, int memory, AnySystem& system, double h, State<V>& state) {
+  state.memory.resize(static_cast<std::size_t>(memory));
+  if constexpr (requires { steps.start(system, h, state); }) steps.start(system, h, state);
+}
 
-/// The method of that name; throws std::invalid_argument that lists the known names.
-const MethodInfo& find_method(std::string_view name);
+template <class Description>
+class StepperOf final : public Stepper {
+ public:
+  explicit StepperOf(const Description& description)
+      : info_(description.info()), steps_(make_steps<Vector>(description)) {
+    constexpr bool starts = requires(Steps & s, System & y, State<Vector> & x) { s.start(y, 1.0, x); };
+    if (info_.memory < 0 || (info_.memory > 0 && !starts))
+      throw std::invalid_argument("method '" + info_.name + "' carries " + std::to_string(info_.memory) +
+                                  " vectors, expected none or a start() that fills them");
+    if (info_.when_h_changes == StepChange::rescale && !rescales)
+      throw std::invalid_argument("method '" + info_.name + "' rescales, expected a change_step()");
+  }
 
-/// A stepper for the method of that name; throws like find_method. A linearized method linearizes at every
-/// step until it is told otherwise.
-std::unique_ptr<Stepper> make_stepper(std::string_view name);
+  void start(System& system, double h, State<Vector>& state) override {
+    start_steps(steps_, info_.memory, system, h, state);
+  }
+  StepStatus step(System& system, double h, State<Vector>& state) override {
+    return steps_.step(system, h, state);
+  }
+  void change_step(System& system, double h_old, double h_new, State<Vector>& state) override {
+    if (info_.when_h_changes == StepChange::restart) start(system, h_new, state);
+    if constexpr (rescales)
+      if (info_.when_h_changes == StepChange::rescale) steps_.change_step(system, h_old, h_new, state);
+  }
+  void restart(long steps_per_linearization) override {
+    if constexpr (requires(Steps & s) { s.restart(1L); }) steps_.restart(steps_per_linearization);
+  }
+
+ private:
+  using Steps = StepsOf<Description, Vector>;
+  static constexpr bool rescales = requires(Steps & s, System& y, State<Vector>& x) {
+    s.change_step(y, 1.0, 1.0, x);
+  };
+
+  MethodInfo info_;
+  Steps steps_;
+};
+
+/// A stepper for the method. A linearized method linearizes at every step until it is told otherwise. Throws
+/// std::invalid_argument for a description that says it carries or rescales what its steps do not.
+template <class Description>
+std::unique_ptr<Stepper> make_stepper(const Description& description) {
+  return std::make_unique<StepperOf<Description>>(description);
+}
 
 }  // namespace springstab

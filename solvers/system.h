@@ -10,7 +10,20 @@
 
 namespace springstab {
 
-/// How a solve with 1 + hD' + h²K' went.
+/// The matrix m + dD' + kK' of an implicit step, with real numbers m > 0, d [s] and k [s²], which for steps
+/// forward in time are not negative: implicit Euler's is {1, h, h²}. Complex numbers, as the stages of fully
+/// implicit Runge-Kutta methods lead to, are not served.
+struct Shift {
+  double mass, damping, stiffness;
+
+  /// The factor of K' where D' = d0 + αK': dα + k, in implicit Euler's case as h(α + h), one rounding less.
+  double of_stiffness(double alpha) const {
+    return stiffness == damping * damping ? damping * (alpha + damping) : damping * alpha + stiffness;
+  }
+  friend bool operator==(const Shift&, const Shift&) = default;
+};
+
+/// How a solve with m + dD' + kK' went.
 struct SolveReport {
   StepStatus status = StepStatus::done;
   long iterations = 0;  // 0 for a direct solve
@@ -24,12 +37,12 @@ concept Accelerating = requires(S& system, const V& x, const V& v, V& a) {
 };
 
 /// A linear system x'' = -K'x - D'v (+ constant): its products, and the solve that implicit methods need,
-/// (1 + hD' + h²K') out = rhs.
+/// (m + dD' + kK') out = rhs.
 template <class S, class V>
-concept Linear = Accelerating<S, V> && requires(S& system, double h, const V& u, V& out) {
+concept Linear = Accelerating<S, V> && requires(S& system, const Shift& shift, const V& u, V& out) {
   system.stiffness_times(u, out);
   system.damping_times(u, out);
-  { system.solve_shifted(h, u, out) } -> std::same_as<SolveReport>;
+  { system.solve_shifted(shift, u, out) } -> std::same_as<SolveReport>;
 };
 
 /// A system that can be linearized at (x, v); a linear one returns itself.
@@ -61,8 +74,8 @@ class LinearSystem : public System {
  public:
   virtual void stiffness_times(const Vector& u, Vector& out) = 0;  // out = K'u
   virtual void damping_times(const Vector& u, Vector& out) = 0;    // out = D'u
-  /// Solves (1 + hD' + h²K') out = rhs, starting from zero where it iterates.
-  virtual SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) = 0;
+  /// Solves (m + dD' + kK') out = rhs, starting from zero where it iterates.
+  virtual SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) = 0;
   LinearSystem& linearized(const Vector&, const Vector&) override { return *this; }
 };
 

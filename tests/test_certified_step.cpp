@@ -19,7 +19,6 @@
 #include "solvers/io/matrix_file.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "solvers/scene/every_pose.h"
-#include "solvers/stepper.h"
 #include "tests/random_nets.h"
 #include "tests/shared_data.h"
 
@@ -120,9 +119,9 @@ std::vector<double> certified_shares(const Certify& certify, std::string_view me
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(symplectic_euler_is_exact_and_the_others_are_not) {
-  for (const MethodInfo& method : all_methods())
-    BOOST_TEST(stability_region(method.name).exact_condition().has_value() ==
-               (method.name == "symplectic-euler"));
+  for (const Method& method : all_methods())
+    BOOST_TEST(stability_region(method.name()).exact_condition().has_value() ==
+               (method.name() == "symplectic-euler"));
   BOOST_TEST(symplectic_condition().x == 2);
   BOOST_TEST(symplectic_condition().y == 1);
   BOOST_TEST(symplectic_condition().bound == 4);
@@ -228,8 +227,8 @@ BOOST_AUTO_TEST_CASE(many_unknowns_that_are_not_symmetric_have_no_limit) {
   const StiffestMode k0 = stiffest_mode(s);
   BOOST_TEST(k0.value == 9, tolerance(1e-9));
   GeneralDamping general(s, k0, {DampingModel::Kind::general, 0, 0, false}, 1.5, true);
-  for (const MethodInfo& method : all_methods()) {
-    const MethodLimits limits = general.limits(method.name);
+  for (const Method& method : all_methods()) {
+    const MethodLimits limits = general.limits(method.name());
     BOOST_TEST((limits.status == LimitStatus::unknown && !limits.h_max && !limits.h_certified));
     BOOST_TEST(limits.unproved == "K or D is not symmetric");
   }
@@ -316,8 +315,8 @@ BOOST_AUTO_TEST_CASE(limits_scale_with_the_unit_of_time) {
         const StructuralMatrices t = in_unit(s, unit);
         const StiffestMode k0_t = stiffest_mode(t);
         GeneralDamping one(s, k0, general, 1.5, true), other(t, k0_t, general, 1.5, true);
-        for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
-            const MethodLimits a = one.limits(method.name), b = other.limits(method.name);
+        for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
+            const MethodLimits a = one.limits(method.name()), b = other.limits(method.name());
             BOOST_TEST((a.status == b.status));
             for (const auto member :
                  {&MethodLimits::h_max, &MethodLimits::h_certified, &MethodLimits::recommended}) {
@@ -453,11 +452,11 @@ BOOST_AUTO_TEST_CASE(a_step_for_every_pose_is_stable_in_each) {
 BOOST_AUTO_TEST_CASE(certified_steps_are_below_the_truth_on_any_net) {
   int i = 0;
   const auto any = [&](RandomNets& random) { return matrices(random.net(i++ % 2 == 0)); };
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = stability_region(method.name);
-    if (region.exact_condition() || region.constants().covers_quadrant || method.linearized) continue;
-    const std::vector<double> shares = certified_shares(by_polygons, method.name, 7, 200, any);
-    if (method.name == "rk4") {
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = stability_region(method.name());
+    if (region.exact_condition() || region.constants().covers_quadrant || method.info().linearized) continue;
+    const std::vector<double> shares = certified_shares(by_polygons, method.name(), 7, 200, any);
+    if (method.name() == "rk4") {
       BOOST_TEST(shares[100] >= 0.98);
       BOOST_TEST(shares[0] >= 0.5);
     }
@@ -518,42 +517,47 @@ BOOST_AUTO_TEST_CASE(the_magnitude_of_a_step_bounds_its_transition_matrix) {
     const StructuralMatrices s{.stiffness = k.sparseView(0.0, 0.0),
                                .mass = Eigen::MatrixXd::Identity(n, n).sparseView(),
                                .damping = d.sparseView(0.0, 0.0)};
-    for (const MethodInfo& info : all_methods())
-      if (const auto magnitude = step_magnitude(info.name, k, d)) {
-        const Eigen::MatrixXd a = transition_matrix(s, info.name, 1);
+    for (const Method& each : all_methods())
+      if (const auto magnitude = each.magnitude(k, d)) {
+        const Eigen::MatrixXd a = transition_matrix(s, each.name(), 1);
         BOOST_TEST((a.cwiseAbs().array() <= magnitude->array() * (1 + 1e-14)).all());
         ++bounded;
       }
-    const Eigen::MatrixXd euler = step_magnitude("explicit-euler", k, d).value();
+    const Eigen::MatrixXd euler = Method("explicit-euler").magnitude(k, d).value();
     BOOST_TEST((euler.bottomLeftCorner(n, n) == k.cwiseAbs()));
     BOOST_TEST((euler.bottomRightCorner(n, n) - Eigen::MatrixXd::Identity(n, n)).isApprox(d.cwiseAbs()));
     BOOST_TEST(euler.topRows(n).sum() == 2 * n);
   }
   BOOST_TEST(bounded >= 20 * 4);
-  BOOST_TEST(!step_magnitude("implicit-euler", symmetric(), symmetric()));
+  BOOST_TEST(!Method("implicit-euler").magnitude(symmetric(), symmetric()));
 }
 
 // Kutta's third-order method has a coefficient of -1, and a step may subtract: with K = 0, D = 1 the sizes
 // are v2 = 3/2, v3 = 1 + 1 + 2·3/2 = 5, v = 1 + (1 + 4·3/2 + 5)/6 = 3; a difference 1 - ½·1 counts as 3/2.
-template <class V>
-struct Kutta
-    : ExplicitRungeKutta<V, ExplicitTableau<3>{.a = {{{}, {0.5}, {-1, 2}}}, .b = {1. / 6, 2. / 3, 1. / 6}}> {
+struct Kutta {
+  MethodInfo info() const { return {"kutta", "Kutta", 3, false}; }
+  template <class V>
+  using Steps =
+      ExplicitRungeKutta<V, ExplicitTableau<3>{.a = {{{}, {0.5}, {-1, 2}}}, .b = {1. / 6, 2. / 3, 1. / 6}}>;
 };
 
-template <class V>
 struct Subtracting {
-  StepStatus step(MagnitudeSystem& system, double h, State<V>& state) {
-    V a{}, x = state.x;
-    system.acceleration(state.x, state.v, a);
-    V v = state.v - (0.5 * h) * a;
-    return commit(state, x, v);
-  }
+  MethodInfo info() const { return {"subtracting", "subtracting", 1, false}; }
+  template <class V>
+  struct Steps {
+    StepStatus step(MagnitudeSystem& system, double h, State<V>& state) {
+      V a{}, x = state.x;
+      system.acceleration(state.x, state.v, a);
+      V v = state.v - (0.5 * h) * a;
+      return commit(state, x, v);
+    }
+  };
 };
 
 BOOST_AUTO_TEST_CASE(magnitudes_do_not_cancel) {
-  MagnitudeSystem system{Eigen::MatrixXd::Zero(1, 1), Eigen::MatrixXd::Ones(1, 1)};
-  BOOST_TEST((*magnitude<Kutta<Magnitude>>(system))(1, 1) == 3, boost::test_tools::tolerance(1e-15));
-  BOOST_TEST((*magnitude<Subtracting<Magnitude>>(system))(1, 1) == 1.5);
+  const Eigen::MatrixXd k = Eigen::MatrixXd::Zero(1, 1), d = Eigen::MatrixXd::Ones(1, 1);
+  BOOST_TEST((*step_magnitude(Kutta(), k, d))(1, 1) == 3, boost::test_tools::tolerance(1e-15));
+  BOOST_TEST((*step_magnitude(Subtracting(), k, d))(1, 1) == 1.5);
 }
 
 BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {
@@ -680,7 +684,7 @@ BOOST_AUTO_TEST_CASE(a_half_plane_is_left_where_its_inequality_fails) {
     const auto any = [&] { return random.uniform(0, 1) < 0.3 ? 0 : random.uniform(-1, 1); };
     const HalfPlane edge{any(), any(), std::abs(any())};
     const ModePoint p{std::abs(any()), std::abs(any())};
-    const double h = first_exit(edge, p);
+    const double h = exit_step(edge, p);
     const auto outside = [&](double step) {
       return edge.x * step * p.d + edge.y * step * step * p.k - edge.bound;
     };
@@ -870,11 +874,11 @@ BOOST_AUTO_TEST_CASE(nothing_is_certified_of_structures_that_may_grow_by_themsel
     BOOST_TEST(!limits.h_certified);
     BOOST_TEST(limits.unproved == reason);
   };
-  for (const MethodInfo& method : all_methods()) {
-    has_no_proof(method.name, "D is indefinite");
+  for (const Method& method : all_methods()) {
+    has_no_proof(method.name(), "D is indefinite");
     k0.indefinite = true;
     general.semidefinite = true;
-    has_no_proof(method.name, "K is indefinite");
+    has_no_proof(method.name(), "K is indefinite");
     k0.indefinite = false;
     general.semidefinite = false;
   }

@@ -11,7 +11,6 @@
 #include "analysis/spectra/spectrum.h"
 #include "experiments/studies/complexity/complexity_studies.h"
 #include "experiments/studies/complexity/k0_watch.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(complexity)
 
@@ -125,8 +124,8 @@ BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
   const Drape drape{.side = 8};
   const StiffestMode k0 = k0_of(drape, quiet);
   std::vector<Heat> heats;
-  for (const MethodInfo& method : all_methods()) {
-    const std::string name(method.name);
+  for (const Method& method : all_methods()) {
+    const std::string name(method.name());
     heats.push_back({{name, name}, drape, k0, 0.05});
   }
   heats.push_back(
@@ -136,17 +135,17 @@ BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
   double leu_alpha = 0;
   for (std::size_t i = 0; i < first.size(); ++i) BOOST_TEST_CONTEXT(heats[i].contestant.name) {
       const HeatResult& r = first[i];
-      const MethodInfo& method = find_method(heats[i].contestant.method);
+      const Method method = heats[i].contestant.method;
       BOOST_TEST((r.finished && r.rollbacks == 0 && r.halved_steps == 0));
       BOOST_TEST(r.cpu_seconds.size() == 3);
       BOOST_TEST(r.h * static_cast<double>(r.steps) == 0.05, boost::test_tools::tolerance(1e-12));
       BOOST_TEST(r.counts.block_products == second[i].counts.block_products);
       BOOST_TEST(r.counts.force_evaluations == second[i].counts.force_evaluations);
-      if (method.implicit) {
+      if (method.info().implicit) {
         BOOST_TEST(r.steps == 5);
         BOOST_TEST(r.counts.hessian_assemblies == 5);
         BOOST_TEST(r.counts.cg_iterations > 5);
-      } else if (method.linearized) {
+      } else if (method.info().linearized) {
         BOOST_TEST(r.counts.hessian_assemblies == 5);
         BOOST_TEST(r.counts.force_evaluations == 5);
         BOOST_TEST(r.counts.block_products >= r.steps);
@@ -154,7 +153,7 @@ BOOST_AUTO_TEST_CASE(a_race_counts_what_its_methods_are_known_to_take) {
         BOOST_TEST(r.counts.force_evaluations % r.steps == 0);
         BOOST_TEST(r.counts.hessian_assemblies == 0);
       }
-      if (method.name == "linearized-explicit-euler") leu_alpha = r.alpha;
+      if (method.name() == "linearized-explicit-euler") leu_alpha = r.alpha;
     }
   BOOST_TEST(leu_alpha > 0);
   BOOST_TEST(first[first.size() - 2].alpha == 0);

@@ -17,13 +17,16 @@
 #include "analysis/spectra/generator_spectrum.h"
 #include "solvers/linear/block_linear_system.h"
 #include "solvers/linear/matrix_system.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(linear)
 
 using namespace springstab;
 
 namespace {
+
+Shift implicit_euler(double h) { return {1, h, h * h}; }
+const std::vector<Shift> some_shifts{
+    implicit_euler(1e-3), implicit_euler(0.3), implicit_euler(20), {1.5, 0.2, 0.7}, {1, 0, 0.3}};
 
 using Dense = Eigen::MatrixXd;
 using IndexPair = std::pair<int, int>;
@@ -122,7 +125,7 @@ struct DenseSystem {
     d = s.damping().d0 * m + s.damping().alpha * k;
     if (s.own_damping()) d += Dense(s.own_damping()->to_sparse());
   }
-  Dense shifted(double h) const { return m + h * d + h * h * k; }
+  Dense shifted(const Shift& s) const { return s.mass * m + s.damping * d + s.stiffness * k; }
   Vector acceleration(const Vector& x, const Vector& v) const { return -m.llt().solve(k * x + d * v); }
 };
 
@@ -272,17 +275,18 @@ BOOST_AUTO_TEST_CASE(a_block_system_solves_to_its_tolerance) {
   for_each_system([](BlockLinearSystem& system, Random& random) {
     const DenseSystem dense(system);
     const Vector rhs = random.vector(system.size());
-    for (const double h : {1e-3, 0.3, 20.0}) {
-      const Dense shifted = dense.shifted(h);
+    for (const Shift& shift : some_shifts) {
+      const Dense shifted = dense.shifted(shift);
       Dense blocks = Dense::Zero(system.size(), system.size());
       for (Eigen::Index i = 0; i < system.size(); i += 3)
         blocks.block<3, 3>(i, i) = shifted.block<3, 3>(i, i);
       const auto norm = [&](const Vector& r) { return std::sqrt(r.dot(blocks.llt().solve(r))); };
       const Vector b = dense.m * rhs;
-      for (const double tolerance : {1e-2, 1e-6, 1e-12}) BOOST_TEST_CONTEXT("h " << h << ", " << tolerance) {
+      for (const double tolerance : {1e-2, 1e-6, 1e-12})
+        BOOST_TEST_CONTEXT("k " << shift.stiffness << ", " << tolerance) {
           system.solver = {.tolerance = tolerance, .preconditioner = Preconditioner::block_jacobi};
           Vector y;
-          const SolveReport report = system.solve_shifted(h, rhs, y);
+          const SolveReport report = system.solve_shifted(shift, rhs, y);
           BOOST_TEST((report.status == StepStatus::done));
           BOOST_TEST(norm(b - shifted * y) <= (tolerance + 1e-13) * norm(b));
           BOOST_TEST(report.iterations >= 1);
@@ -300,13 +304,13 @@ BOOST_AUTO_TEST_CASE(iterations_run_out_exactly_when_they_are_needed) {
   const Vector rhs = random.vector(system.size());
   Vector y;
   system.solver.tolerance = 1e-8;
-  const long needed = system.solve_shifted(1, rhs, y).iterations;
+  const long needed = system.solve_shifted(implicit_euler(1), rhs, y).iterations;
   BOOST_TEST(needed > 20);
   BOOST_TEST(needed <= 180);  // the number of unknowns
   system.solver.max_iterations = needed;
-  BOOST_TEST((system.solve_shifted(1, rhs, y).status == StepStatus::done));
+  BOOST_TEST((system.solve_shifted(implicit_euler(1), rhs, y).status == StepStatus::done));
   system.solver.max_iterations = needed - 1;
-  const SolveReport report = system.solve_shifted(1, rhs, y);
+  const SolveReport report = system.solve_shifted(implicit_euler(1), rhs, y);
   BOOST_TEST((report.status == StepStatus::not_converged));
   BOOST_TEST(report.iterations == needed - 1);
 }
@@ -318,10 +322,10 @@ BOOST_AUTO_TEST_CASE(uncoupled_particles_are_solved_in_one_iteration) {
   fill_definite(system.stiffness(), 100, random);
   system.solver.tolerance = 1e-12;
   Vector y;
-  const SolveReport report = system.solve_shifted(0.5, random.vector(9), y);
+  const SolveReport report = system.solve_shifted(implicit_euler(0.5), random.vector(9), y);
   BOOST_TEST((report.status == StepStatus::done));
   BOOST_TEST(report.iterations == 1);
-  const SolveReport nothing = system.solve_shifted(0.5, Vector::Zero(9), y);
+  const SolveReport nothing = system.solve_shifted(implicit_euler(0.5), Vector::Zero(9), y);
   BOOST_TEST((nothing.status == StepStatus::done));
   BOOST_TEST(nothing.iterations == 0);
   BOOST_TEST(y.size() == 9);
@@ -344,11 +348,11 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
   Vector y;
   const auto status = [&](double h) {
     system.solver.preconditioner = Preconditioner::block_jacobi;
-    const StepStatus found = system.solve_shifted(h, rhs, y).status;
+    const StepStatus found = system.solve_shifted(implicit_euler(h), rhs, y).status;
     system.solver.preconditioner = Preconditioner::block_ssor;
-    BOOST_TEST((system.solve_shifted(h, rhs, y).status == found));
+    BOOST_TEST((system.solve_shifted(implicit_euler(h), rhs, y).status == found));
     system.solver.kind = SolverKind::cholesky;
-    BOOST_TEST((system.solve_shifted(h, rhs, y).status == found));
+    BOOST_TEST((system.solve_shifted(implicit_euler(h), rhs, y).status == found));
     system.solver.kind = SolverKind::conjugate_gradients;
     return found;
   };
@@ -358,7 +362,8 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
   BOOST_TEST((status(1.01) == StepStatus::not_positive_definite));
   set(1, 0);  // and is seen even where the right-hand side does not look
   system.stiffness().block(system.stiffness().diagonal(1))[4] = -1;
-  BOOST_TEST((system.solve_shifted(1.01, Vector::Unit(6, 0), y).status == StepStatus::not_positive_definite));
+  BOOST_TEST((system.solve_shifted(implicit_euler(1.01), Vector::Unit(6, 0), y).status ==
+              StepStatus::not_positive_definite));
   set(1, 2);  // diagonal blocks 1 + h², but an eigenvalue 1 - h²
   BOOST_TEST((status(0.99) == StepStatus::done));
   BOOST_TEST((status(1.01) == StepStatus::not_positive_definite));
@@ -367,9 +372,9 @@ BOOST_AUTO_TEST_CASE(an_indefinite_matrix_is_reported_not_solved) {
     system.solver.kind = kind;
     Vector wrong = rhs;
     wrong[4] = nan_value;
-    BOOST_TEST((system.solve_shifted(0.5, wrong, y).status == StepStatus::diverged));
+    BOOST_TEST((system.solve_shifted(implicit_euler(0.5), wrong, y).status == StepStatus::diverged));
     wrong[4] = inf;
-    BOOST_TEST((system.solve_shifted(0.5, wrong, y).status == StepStatus::diverged));
+    BOOST_TEST((system.solve_shifted(implicit_euler(0.5), wrong, y).status == StepStatus::diverged));
   }
 }
 
@@ -391,11 +396,14 @@ BOOST_AUTO_TEST_CASE(a_matrix_system_is_its_dense_matrices) {
         BOOST_REQUIRE_EQUAL(out.size(), n);
         if (damped) check_equal(out, unmass(d * v), 1e-11);
         if (!damped) BOOST_TEST(out.isZero(0));
-        for (const double h : {0.1, 2.0, 0.1}) {  // a factor is kept only while h is the same
-          const SolveReport report = system.solve_shifted(h, x, out);
+        // A factor is kept only while the shift is the same.
+        for (const Shift& shift : {implicit_euler(0.1), implicit_euler(2), Shift{3, 2, 4}, Shift{3, 1, 4},
+                                   Shift{3, 1, 5}, implicit_euler(0.1)}) {
+          const SolveReport report = system.solve_shifted(shift, x, out);
           BOOST_TEST((report.status == StepStatus::done));
           BOOST_TEST((report.iterations == 0 && report.products == 0));
-          check_equal(out, (m + h * d + h * h * k).llt().solve(m * x), 1e-11);
+          check_equal(out, (shift.mass * m + shift.damping * d + shift.stiffness * k).llt().solve(m * x),
+                      1e-11);
         }
         BOOST_TEST(system.kinetic_energy(v) == 0.5 * v.dot(m * v), boost::test_tools::tolerance(1e-12));
         BOOST_TEST(system.potential_energy(x) == 0.5 * x.dot(k * x), boost::test_tools::tolerance(1e-12));
@@ -406,7 +414,9 @@ BOOST_AUTO_TEST_CASE(a_matrix_system_reports_an_indefinite_shifted_matrix) {
   const Dense k = Eigen::Vector3d(2, -4, 1).asDiagonal();
   MatrixSystem system(prepare(sparse(k)));
   Vector out;
-  const auto status = [&](double h) { return system.solve_shifted(h, Vector::Ones(3), out).status; };
+  const auto status = [&](double h) {
+    return system.solve_shifted(implicit_euler(h), Vector::Ones(3), out).status;
+  };
   BOOST_TEST((status(0.49) == StepStatus::done));  // 1 - 4h² > 0
   BOOST_TEST((status(0.51) == StepStatus::not_positive_definite));
   BOOST_TEST((status(0.49) == StepStatus::done));
@@ -420,11 +430,11 @@ BOOST_AUTO_TEST_CASE(every_method_moves_a_block_system_as_its_matrix_system) {
   const DenseSystem dense(blocks);
   MatrixSystem matrices(prepare(sparse(dense.k), sparse(dense.m), sparse(dense.d)));
   const State<Vector> start{random.vector(blocks.size()), random.vector(blocks.size())};
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> one = start, other = start;
       for (int i = 0; i < 4; ++i) {
-        BOOST_TEST((make_stepper(method.name)->step(blocks, 0.003, one) == StepStatus::done));
-        BOOST_TEST((make_stepper(method.name)->step(matrices, 0.003, other) == StepStatus::done));
+        BOOST_TEST((method.stepper()->step(blocks, 0.003, one) == StepStatus::done));
+        BOOST_TEST((method.stepper()->step(matrices, 0.003, other) == StepStatus::done));
       }
       check_equal(one.x, other.x, 1e-11);
       check_equal(one.v, other.v, 1e-11);
@@ -441,9 +451,9 @@ BOOST_AUTO_TEST_CASE(implicit_euler_backwards_undoes_explicit_euler) {
     const double h = 1e-3;
     const State<Vector> start{random.vector(system.size()), random.vector(system.size())};
     State<Vector> state = start;
-    BOOST_TEST((make_stepper("explicit-euler")->step(system, h, state) == StepStatus::done));
+    BOOST_TEST((Method("explicit-euler").stepper()->step(system, h, state) == StepStatus::done));
     BOOST_TEST((state.v - start.v).norm() > 1e-3);
-    BOOST_TEST((make_stepper("implicit-euler")->step(system, -h, state) == StepStatus::done));
+    BOOST_TEST((Method("implicit-euler").stepper()->step(system, -h, state) == StepStatus::done));
     check_equal(state.x, start.x, 1e-12);
     check_equal(state.v, start.v, 1e-12);
   }
@@ -649,16 +659,16 @@ BOOST_AUTO_TEST_CASE(a_factorization_solves_to_rounding) {
     const DenseSystem dense(system);
     const Vector rhs = random.vector(system.size()), b = dense.m * rhs;
     system.solver.kind = SolverKind::cholesky;
-    for (const double h : {1e-3, 0.3, 20.0}) BOOST_TEST_CONTEXT("h " << h) {
-        const Dense shifted = dense.shifted(h);
+    for (const Shift& shift : some_shifts) BOOST_TEST_CONTEXT("k " << shift.stiffness) {
+        const Dense shifted = dense.shifted(shift);
         Vector y, again;
-        const SolveReport report = system.solve_shifted(h, rhs, y);
+        const SolveReport report = system.solve_shifted(shift, rhs, y);
         BOOST_TEST((report.status == StepStatus::done));
         BOOST_TEST(report.iterations == 0);
         BOOST_TEST(report.products == 0);
         BOOST_TEST((b - shifted * y).norm() <= 100 * eps * shifted.norm() * y.norm());
         check_equal(y, shifted.llt().solve(b), 1e-9);
-        system.solve_shifted(h, rhs, again);
+        system.solve_shifted(shift, rhs, again);
         BOOST_TEST((again == y));
       }
   });
@@ -694,8 +704,8 @@ BOOST_AUTO_TEST_CASE(over_relaxation_solves_to_its_tolerance_in_its_norm) {
   for_each_system([](BlockLinearSystem& system, Random& random) {
     const DenseSystem dense(system);
     const Vector rhs = random.vector(system.size());
-    for (const double h : {1e-3, 0.3, 20.0}) {
-      const Dense shifted = dense.shifted(h);
+    for (const Shift& shift : some_shifts) {
+      const Dense shifted = dense.shifted(shift);
       Dense diagonal = Dense::Zero(system.size(), system.size()),
             lower = shifted.triangularView<Eigen::Lower>();
       for (Eigen::Index i = 0; i < system.size(); i += 3) {
@@ -705,10 +715,11 @@ BOOST_AUTO_TEST_CASE(over_relaxation_solves_to_its_tolerance_in_its_norm) {
       const Dense p = lower * diagonal.llt().solve(Dense(lower.transpose()));
       const auto norm = [&](const Vector& r) { return std::sqrt(r.dot(p.llt().solve(r))); };
       const Vector b = dense.m * rhs;
-      for (const double tolerance : {1e-2, 1e-6, 1e-12}) BOOST_TEST_CONTEXT("h " << h << ", " << tolerance) {
+      for (const double tolerance : {1e-2, 1e-6, 1e-12})
+        BOOST_TEST_CONTEXT("k " << shift.stiffness << ", " << tolerance) {
           system.solver = {.tolerance = tolerance, .preconditioner = Preconditioner::block_ssor};
           Vector y;
-          const SolveReport report = system.solve_shifted(h, rhs, y);
+          const SolveReport report = system.solve_shifted(shift, rhs, y);
           BOOST_TEST((report.status == StepStatus::done));
           BOOST_TEST(norm(b - shifted * y) <= (tolerance + 1e-13) * norm(b));
           BOOST_TEST(report.iterations >= 1);
@@ -755,14 +766,14 @@ BOOST_AUTO_TEST_CASE(over_relaxation_takes_fewer_iterations_to_the_same_solution
   const Vector rhs = random.vector(system.size());
   Vector jacobi, relaxed;
   system.solver = {.tolerance = 1e-10, .preconditioner = Preconditioner::block_jacobi};
-  const SolveReport slow = system.solve_shifted(0.3, rhs, jacobi);
+  const SolveReport slow = system.solve_shifted(implicit_euler(0.3), rhs, jacobi);
   system.solver.preconditioner = Preconditioner::block_ssor;
-  const SolveReport fast = system.solve_shifted(0.3, rhs, relaxed);
+  const SolveReport fast = system.solve_shifted(implicit_euler(0.3), rhs, relaxed);
   BOOST_TEST((slow.status == StepStatus::done && fast.status == StepStatus::done));
   check_equal(relaxed, jacobi, 1e-7);
   BOOST_TEST(2 * fast.iterations < slow.iterations);
   const Vector once = relaxed;
-  system.solve_shifted(0.3, rhs, relaxed);
+  system.solve_shifted(implicit_euler(0.3), rhs, relaxed);
   BOOST_TEST((relaxed == once));
 }
 

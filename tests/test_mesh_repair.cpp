@@ -13,7 +13,6 @@
 #include "solvers/io/input_error.h"
 #include "solvers/io/obj.h"
 #include "solvers/scene/mesh_repair.h"
-#include "solvers/stepper.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(mesh_repair)
@@ -254,7 +253,7 @@ BOOST_AUTO_TEST_CASE(pins_and_frames_keep_the_numbers_of_the_file) {
   BOOST_REQUIRE((a.x == b.x));
   for (Subject* s : {&plain, &subject}) {
     State<Vector>& state = s == &plain ? a : b;
-    const auto stepper = make_stepper("symplectic-euler");
+    const auto stepper = Method("symplectic-euler").stepper();
     for (int i = 0; i < 20; ++i) BOOST_REQUIRE((stepper->step(s->system(), 1e-3, state) == StepStatus::done));
   }
   BOOST_TEST((a.x == b.x));
@@ -303,7 +302,7 @@ BOOST_AUTO_TEST_CASE(meshes_of_other_programs_are_mended_as_published) {
             BOOST_TEST(k0.converged);
             BOOST_TEST(k0.value > 1);
             State<Vector> state = start;
-            const auto stepper = make_stepper("symplectic-euler");
+            const auto stepper = Method("symplectic-euler").stepper();
             const double h = 1 / std::sqrt(k0.value);  // half the limit
             for (int i = 0; i < 50; ++i)
               BOOST_REQUIRE((stepper->step(subject.system(), h, state) == StepStatus::done));

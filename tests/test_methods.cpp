@@ -12,11 +12,11 @@
 
 #include "allocation_counter.h"
 #include "analysis/regions/amplification.h"
+#include "analysis/regions/stability_region.h"
 #include "oracles.h"
 #include "solvers/linear/matrix_system.h"
 #include "solvers/methods/list.h"
 #include "solvers/oscillator.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(methods)
 
@@ -43,7 +43,7 @@ std::vector<Point> random_points() {
 
 std::vector<std::unique_ptr<Stepper>> all_steppers() {
   std::vector<std::unique_ptr<Stepper>> steppers;
-  for (const MethodInfo& method : all_methods()) steppers.push_back(make_stepper(method.name));
+  for (const Method& method : all_methods()) steppers.push_back(method.stepper());
   return steppers;
 }
 
@@ -71,8 +71,8 @@ class Pendulum final : public System {
     void acceleration(const Vector& x, const Vector& v, Vector& out) override { out = -k * x - d * v; }
     void stiffness_times(const Vector& u, Vector& out) override { out = k * u; }
     void damping_times(const Vector& u, Vector& out) override { out = d * u; }
-    SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override {
-      out = rhs / (1 + h * d + h * h * k);
+    SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override {
+      out = rhs / (shift.mass + shift.damping * d + shift.stiffness * k);
       return {};
     }
     double kinetic_energy(const Vector& v) override { return v[0] * v[0] / 2; }
@@ -123,11 +123,11 @@ class Chain final : public LinearSystem {
     for (Eigen::Index i = 0; i < size(); ++i) out[i] = 0.01 * stiffness(u, i) + 0.2 * u[i];
   }
   /// Tridiagonal elimination.
-  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override {
-    const double scale = h * 0.01 + h * h;
+  SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override {
+    const double scale = shift.damping * 0.01 + shift.stiffness;
     out = rhs;
     for (Eigen::Index i = 0; i < size(); ++i) {
-      shifted_[i] = 1 + 0.2 * h + scale * (spring_[i] + spring_[i + 1]);
+      shifted_[i] = shift.mass + 0.2 * shift.damping + scale * (spring_[i] + spring_[i + 1]);
       if (i == 0) continue;
       const double factor = -scale * spring_[i] / shifted_[i - 1];
       shifted_[i] += factor * scale * spring_[i];
@@ -180,13 +180,13 @@ SparseMatrix sparse(const Eigen::MatrixXd& a) { return a.sparseView(); }
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(names_are_unique_and_find_their_method) {
-  for (const MethodInfo& method : all_methods()) {
-    BOOST_TEST(&find_method(method.name) == &method, "the name " << method.name << " finds another method");
-    BOOST_TEST(make_stepper(method.name) != nullptr);
-    BOOST_TEST(!method.title.empty());
-    BOOST_TEST(method.order >= 1);
+  for (const Method& method : all_methods()) {
+    BOOST_TEST((Method(method.name()) == method), "the name " << method.name() << " finds another method");
+    BOOST_TEST(method.stepper() != nullptr);
+    BOOST_TEST(!method.info().title.empty());
+    BOOST_TEST(method.info().order >= 1);
   }
-  for (const auto& oracle : oracles::all()) BOOST_TEST(find_method(oracle.method).name == oracle.method);
+  for (const auto& oracle : oracles::all()) BOOST_TEST(Method(oracle.method).name() == oracle.method);
 }
 
 BOOST_AUTO_TEST_CASE(an_unknown_name_is_refused_with_the_known_ones) {
@@ -194,61 +194,59 @@ BOOST_AUTO_TEST_CASE(an_unknown_name_is_refused_with_the_known_ones) {
     const auto lists_all = [&](const std::invalid_argument& error) {
       const std::string what = error.what();
       bool all = what.find("'" + name + "'") != std::string::npos;
-      for (const MethodInfo& method : all_methods()) all = all && what.find(method.name) != std::string::npos;
+      for (const Method& method : all_methods()) all = all && what.find(method.name()) != std::string::npos;
       return all;
     };
-    BOOST_CHECK_EXCEPTION(make_stepper(name), std::invalid_argument, lists_all);
-    BOOST_CHECK_EXCEPTION(find_method(name), std::invalid_argument, lists_all);
-    BOOST_CHECK_EXCEPTION(amplification_matrix(name, 1, 1), std::invalid_argument, lists_all);
+    BOOST_CHECK_EXCEPTION(Method(name).stepper(), std::invalid_argument, lists_all);
+    BOOST_CHECK_EXCEPTION(stability_region(name), std::invalid_argument, lists_all);
   }
 }
 
 BOOST_AUTO_TEST_CASE(the_matrix_of_a_step_is_the_papers) {
-  for (const MethodInfo& method : all_methods()) {
-    const oracles::Oracle* oracle = oracles::find(method.name);
+  for (const Method& method : all_methods()) {
+    const oracles::Oracle* oracle = oracles::find(method.name());
     if (!oracle) continue;
     for (const auto& [x, y] : random_points()) {
-      const Eigen::Matrix2d a = amplification_matrix(method.name, x, y);
+      const Eigen::Matrix2d a = method.amplification(x, y);
       const Eigen::Array22d error = (a - oracle->matrix(x, y)).array().abs();
       BOOST_TEST((error <= 16 * epsilon * oracle->matrix_size(x, y).array()).all(),
-                 method.name << " at (" << x << ", " << y << "):\n"
-                             << a << "\nexpected\n"
-                             << oracle->matrix(x, y));
+                 method.name() << " at (" << x << ", " << y << "):\n"
+                               << a << "\nexpected\n"
+                               << oracle->matrix(x, y));
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(the_eigenvalues_of_a_step_are_the_stability_functions) {
   int with_function = 0;
-  for (const MethodInfo& method : all_methods()) {
-    const oracles::Oracle* oracle = oracles::find(method.name);
+  for (const Method& method : all_methods()) {
+    const oracles::Oracle* oracle = oracles::find(method.name());
     if (!oracle) continue;
     with_function += oracle->has_stability_function();
     for (const auto& [x, y] : random_points()) {
-      const auto [value, error] =
-          oracles::eigenvalues(amplification_matrix(method.name, x, y), oracle->matrix_size(x, y));
+      const auto [value, error] = oracles::eigenvalues(method.amplification(x, y), oracle->matrix_size(x, y));
       const double distance = oracles::distance(value, oracle->eigenvalues(x, y));
-      BOOST_TEST(distance <= error, method.name << " at (" << x << ", " << y << "): " << value[0] << ", "
-                                                << value[1] << ", off by " << distance << ", expected below "
-                                                << error);
+      BOOST_TEST(distance <= error, method.name()
+                                        << " at (" << x << ", " << y << "): " << value[0] << ", " << value[1]
+                                        << ", off by " << distance << ", expected below " << error);
     }
   }
   BOOST_TEST(with_function == 4);  // all but symplectic Euler
 }
 
 BOOST_AUTO_TEST_CASE(the_formula_of_a_step_has_the_values_of_the_step) {
-  for (const MethodInfo& method : all_methods()) {
-    const SymbolicAmplification formula = symbolic_amplification(method.name);
-    const oracles::Oracle* oracle = oracles::find(method.name);
+  for (const Method& method : all_methods()) {
+    const std::vector<RationalFunction> formula = method.symbolic_step();
+    const oracles::Oracle* oracle = oracles::find(method.name());
     for (const auto& [x, y] : random_points()) {
-      const Eigen::Matrix2d a = amplification_matrix(method.name, x, y);
+      const Eigen::Matrix2d a = method.amplification(x, y);
       const Eigen::Matrix2d size = oracle ? oracle->matrix_size(x, y)
                                           : Eigen::Matrix2d::Constant(1e4 * (1 + a.norm()) * (1 + a.norm()));
       const Eigen::Matrix2d b{{formula[0](x, y), formula[1](x, y)}, {formula[2](x, y), formula[3](x, y)}};
       BOOST_TEST(((a - b).array().abs() <= 32 * epsilon * size.array()).all(),
-                 method.name << " at (" << x << ", " << y << "):\n"
-                             << a << "\nby the formula\n"
-                             << b);
+                 method.name() << " at (" << x << ", " << y << "):\n"
+                               << a << "\nby the formula\n"
+                               << b);
     }
   }
 }
@@ -258,8 +256,8 @@ BOOST_AUTO_TEST_CASE(the_measured_order_of_accuracy_is_the_stated_one) {
   const auto exact = reference(x0, v0, t, 1e-14), rougher = reference(x0, v0, t, 1e-12);
   const double doubt = std::hypot(exact[0] - rougher[0], exact[1] - rougher[1]);
   Pendulum pendulum;
-  for (const MethodInfo& method : all_methods()) {
-    const auto stepper = make_stepper(method.name);
+  for (const Method& method : all_methods()) {
+    const auto stepper = method.stepper();
     const auto error = [&](int steps) {
       State<Vector> state{Vector::Constant(1, x0), Vector::Constant(1, v0)};
       for (int i = 0; i < steps; ++i)
@@ -268,10 +266,12 @@ BOOST_AUTO_TEST_CASE(the_measured_order_of_accuracy_is_the_stated_one) {
     };
     for (const int steps : {25, 50, 100}) {
       const double coarse = error(steps), fine = error(2 * steps);
-      BOOST_TEST(fine > 100 * doubt, method.name << ": the reference is too rough");
+      BOOST_TEST(fine > 100 * doubt, method.name() << ": the reference is too rough");
       const double order = std::log2(coarse / fine);
-      BOOST_TEST(order > method.order - 0.3, method.name << " in " << steps << " steps: order " << order);
-      BOOST_TEST(order < method.order + 0.4, method.name << " in " << steps << " steps: order " << order);
+      BOOST_TEST(order > method.info().order - 0.3, method.name()
+                                                        << " in " << steps << " steps: order " << order);
+      BOOST_TEST(order < method.info().order + 0.4, method.name()
+                                                        << " in " << steps << " steps: order " << order);
     }
   }
 }
@@ -285,8 +285,8 @@ BOOST_AUTO_TEST_CASE(explicit_euler_with_alpha_h_is_symplectic_euler_on_an_oscil
     const double k = uniform(random) * (2 - h * d0) / (h * h);  // symplectic Euler's stable steps
     State<double> explicit_state{uniform(random), uniform(random)}, symplectic_state = explicit_state;
     const double scale = std::abs(symplectic_state.x) + std::abs(symplectic_state.v) / std::sqrt(k);
-    ExplicitEuler<double> explicit_euler;
-    SymplecticEuler<double> symplectic_euler;
+    ExplicitEuler::Steps<double> explicit_euler;
+    SymplecticEuler::Steps<double> symplectic_euler;
     Oscillator<double> damped{.k = k, .d = d0 + h * k}, soft{.k = k, .d = d0};
     double moved = 0;
     for (int i = 0; i < 50; ++i) {
@@ -316,8 +316,8 @@ BOOST_AUTO_TEST_CASE(explicit_euler_with_alpha_h_is_symplectic_euler_on_matrices
   MatrixSystem soft(prepare(sparse(stiffness), sparse(mass), sparse(damping)));
   MatrixSystem damped(prepare(sparse(stiffness), sparse(mass), sparse(damping + h * stiffness)));
   State<Vector> symplectic_state = random_state(n, 9), explicit_state = symplectic_state;
-  const auto symplectic_euler = make_stepper("symplectic-euler"),
-             explicit_euler = make_stepper("explicit-euler");
+  const auto symplectic_euler = Method("symplectic-euler").stepper(),
+             explicit_euler = Method("explicit-euler").stepper();
   double largest = 0, moved = 0;
   const State<Vector> start = symplectic_state;
   for (int i = 0; i < 300; ++i) {
@@ -334,45 +334,45 @@ BOOST_AUTO_TEST_CASE(explicit_euler_with_alpha_h_is_symplectic_euler_on_matrices
 
 BOOST_AUTO_TEST_CASE(a_failed_step_leaves_the_state_bit_for_bit) {
   Chain chain(9);
-  for (const MethodInfo& method : all_methods()) {
-    const auto stepper = make_stepper(method.name);
+  for (const Method& method : all_methods()) {
+    const auto stepper = method.stepper();
     const State<Vector> before = random_state(9, 10);
     State<Vector> state = before;
     chain.failing_call = 0;
     chain.restart();
     BOOST_TEST_REQUIRE((stepper->step(chain, 0.01, state) == StepStatus::done));
-    BOOST_TEST(!same_bits(state, before), method.name << " did not move");
+    BOOST_TEST(!same_bits(state, before), method.name() << " did not move");
     const int calls = chain.calls();
     BOOST_TEST_REQUIRE(calls >= 1);
     for (int failing = 1; failing <= calls; ++failing) {
       state = before;
       chain.failing_call = failing;
       chain.restart();
-      BOOST_TEST((stepper->step(chain, 0.01, state) == StepStatus::diverged), method.name);
-      BOOST_TEST(same_bits(state, before), method.name << ": evaluation " << failing << " failed");
+      BOOST_TEST((stepper->step(chain, 0.01, state) == StepStatus::diverged), method.name());
+      BOOST_TEST(same_bits(state, before), method.name() << ": evaluation " << failing << " failed");
     }
     chain.failing_call = 0;
     state.v[3] = std::numeric_limits<double>::max();  // overflows in the springs
     const State<Vector> huge = state;
-    BOOST_TEST((stepper->step(chain, 1e3, state) == StepStatus::diverged), method.name);
-    BOOST_TEST(same_bits(state, huge), method.name);
+    BOOST_TEST((stepper->step(chain, 1e3, state) == StepStatus::diverged), method.name());
+    BOOST_TEST(same_bits(state, huge), method.name());
   }
 }
 
 BOOST_AUTO_TEST_CASE(an_implicit_step_passes_on_how_its_solve_failed) {
   Chain chain(9);
   int implicit = 0;
-  for (const MethodInfo& method : all_methods()) {
+  for (const Method& method : all_methods()) {
     for (const StepStatus failure : {StepStatus::not_positive_definite, StepStatus::not_converged}) {
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       const State<Vector> before = random_state(9, 11);
       State<Vector> state = before;
       chain.solve_status = failure;
       const StepStatus status = stepper->step(chain, 0.01, state);
       chain.solve_status = StepStatus::done;
-      BOOST_TEST((status == (method.implicit ? failure : StepStatus::done)), method.name);
-      BOOST_TEST(same_bits(state, before) == method.implicit, method.name);
-      implicit += method.implicit;
+      BOOST_TEST((status == (method.info().implicit ? failure : StepStatus::done)), method.name());
+      BOOST_TEST(same_bits(state, before) == method.info().implicit, method.name());
+      implicit += method.info().implicit;
     }
   }
   BOOST_TEST(implicit >= 2);
@@ -393,24 +393,24 @@ BOOST_AUTO_TEST_CASE(a_step_depends_on_the_state_alone) {
 }
 
 BOOST_AUTO_TEST_CASE(a_system_of_any_vector_type_takes_the_same_step) {
-  Methods::for_each([]<template <class> class Method>() {
+  Methods::for_each([](const auto& description) {
     using Three = Eigen::Array3d;
     Oscillator<double> one{.k = 3.7, .d = 0.9};
     Oscillator<Three> three{.k = {3.7, 1, 9}, .d = {0.9, 2, 0}};
     State<double> scalar{0.4, -1.3};
     State<Three> lanes{{0.4, 1, 2}, {-1.3, 0, 5}};
-    BOOST_TEST((Method<double>().step(one, 0.21, scalar) == StepStatus::done));
-    BOOST_TEST((Method<Three>().step(three, 0.21, lanes) == StepStatus::done));
-    BOOST_TEST(lanes.x[0] == scalar.x, Method<double>::info.name);
-    BOOST_TEST(lanes.v[0] == scalar.v, Method<double>::info.name);
+    BOOST_TEST((make_steps<double>(description).step(one, 0.21, scalar) == StepStatus::done));
+    BOOST_TEST((make_steps<Three>(description).step(three, 0.21, lanes) == StepStatus::done));
+    BOOST_TEST(lanes.x[0] == scalar.x, description.info().name);
+    BOOST_TEST(lanes.v[0] == scalar.v, description.info().name);
   });
 }
 
 BOOST_AUTO_TEST_CASE(only_the_first_step_allocates) {
   constexpr Eigen::Index n = 40;
   Chain chain(n);
-  for (const MethodInfo& method : all_methods()) {
-    const auto stepper = make_stepper(method.name);
+  for (const Method& method : all_methods()) {
+    const auto stepper = method.stepper();
     State<Vector> state = random_state(n, 15);
     const long before = allocations();
     BOOST_REQUIRE(stepper->step(chain, 0.01, state) == StepStatus::done);
@@ -418,9 +418,9 @@ BOOST_AUTO_TEST_CASE(only_the_first_step_allocates) {
     bool done = true;
     for (int i = 0; i < 10; ++i) done = stepper->step(chain, 0.01, state) == StepStatus::done && done;
     const long after = allocations();
-    BOOST_TEST(done, method.name);
-    BOOST_TEST(warm > before, method.name << ": nothing was counted in the first step");
-    BOOST_TEST(after == warm, method.name << ": " << after - warm << " allocations in ten steps");
+    BOOST_TEST(done, method.name());
+    BOOST_TEST(warm > before, method.name() << ": nothing was counted in the first step");
+    BOOST_TEST(after == warm, method.name() << ": " << after - warm << " allocations in ten steps");
   }
 }
 

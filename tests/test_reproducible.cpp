@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 
-#include "solvers/stepper.h"
 #include "tests/command.h"
 #include "tests/results.h"
 
@@ -70,10 +69,10 @@ const char* rotor =
 
 // 61 x 47 and 23 x 23 cells: neither the eight lanes nor the threads divide them.
 BOOST_AUTO_TEST_CASE(regions_do_not_depend_on_threads) {
-  for (const springstab::MethodInfo& info : springstab::all_methods()) {
-    if (info.linearized) continue;  // the region of the method inside
+  for (const springstab::Method& info : springstab::all_methods()) {
+    if (info.info().linearized) continue;  // the region of the method inside
     expect_same_bytes(*this,
-                      "region " + std::string(info.name) +
+                      "region " + std::string(info.name()) +
                           " --nx 61 --ny 47 --raster out/raster.csv --boundary out/boundary.csv --pieces "
                           "out/pieces.csv --simulate 23 --steps 500 --cells out/cells.csv --json",
                       4);
@@ -120,8 +119,8 @@ BOOST_AUTO_TEST_CASE(runs_are_the_same_every_time) {
        net + R"("damping": {"d0": 1, "alpha": 0.001}, "initial": {"stretch": [0.97, 1, 0.97]}})");
   file("chain.mtx", chain);
   const std::string scene = " --duration 0.5 --frames 20 --json --output out";
-  for (const springstab::MethodInfo& info : springstab::all_methods())
-    expect_same_bytes(*this, "simulate stretched.json --method " + std::string(info.name) + scene, 21);
+  for (const springstab::Method& info : springstab::all_methods())
+    expect_same_bytes(*this, "simulate stretched.json --method " + std::string(info.name()) + scene, 21);
   for (const char* solver : {"cg", "direct"})
     expect_same_bytes(
         *this,

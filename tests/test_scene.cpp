@@ -13,7 +13,6 @@
 
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(scene)
 
@@ -427,7 +426,7 @@ BOOST_AUTO_TEST_CASE(a_scene_without_linearizations_has_no_matrix) {
   Scene scene(net, some_pins, {0, -9.81, 0}, {0.1, 1e-3});
   State<Vector> state = scene.rest_state();
   state.v.setConstant(0.1);
-  const auto explicit_method = make_stepper("rk4");
+  const auto explicit_method = Method("rk4").stepper();
   BOOST_REQUIRE((explicit_method->step(scene, 1e-4, state) == StepStatus::done));
   scene.set_damping({0.2, 2e-3});
   BOOST_TEST(scene.kinetic_energy(state.v) > 0);
@@ -483,11 +482,11 @@ BOOST_AUTO_TEST_CASE(two_particles_in_one_place_make_a_step_diverge_and_leave_th
   Random random(7);
   const SpringNet net = random_net(random);
   Scene scene(net, {}, {0, 0, 0}, {});
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> state = scene.rest_state();
       state.x.segment<3>(0) = state.x.segment<3>(9);
       const Vector before = state.x;
-      BOOST_TEST((make_stepper(method.name)->step(scene, 1e-3, state) == StepStatus::diverged));
+      BOOST_TEST((method.stepper()->step(scene, 1e-3, state) == StepStatus::diverged));
       BOOST_TEST((state.x == before));
       BOOST_TEST(state.v.isZero(0));
     }
@@ -503,13 +502,13 @@ BOOST_AUTO_TEST_CASE(an_unconnected_particle_falls_as_each_method_must_have_it) 
   Scene scene(net, {1}, g, {});
   const double h = 0.01;
   const int n = 200;
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> state = scene.rest_state();
       state.v << 3, 1, -2;
       const State<Vector> start = state;
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       for (int i = 0; i < n; ++i) BOOST_REQUIRE((stepper->step(scene, h, state) == StepStatus::done));
-      const int c = method.order >= 2 ? 0 : method.implicit ? 1 : -1;
+      const int c = method.info().order >= 2 ? 0 : method.info().implicit ? 1 : -1;
       const Vector fallen = start.x + n * h * start.v + 0.5 * h * h * (n * n + c * n) * g;
       check_equal(state.x, fallen, n * eps);
       check_equal(state.v, start.v + n * h * g, n * eps);
@@ -524,10 +523,10 @@ BOOST_AUTO_TEST_CASE(air_drag_ends_in_the_terminal_velocity) {
   const Vector g{{0.5, -9.81, 1}};
   const double d0 = 0.7;
   Scene scene(net, {}, g, {d0, 0.4});
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       State<Vector> state = scene.rest_state();
       state.v << 100, 50, -20;
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       for (int i = 0; i < 100; ++i)
         BOOST_REQUIRE((stepper->step(scene, 0.5 / d0, state) == StepStatus::done));
       // Implicit Euler leaves the tolerance of its solve, of a change that itself vanishes.
@@ -546,7 +545,7 @@ BOOST_AUTO_TEST_CASE(a_pendulum_swings_with_the_period_of_the_elliptic_integral)
       {30, 1.01740879759596}, {90, 1.1803405990161}, {150, 1.76220372950376}};
   for (const auto& [degrees, ratio] : known) BOOST_TEST_CONTEXT(degrees << " degrees") {
       State<Vector> state = pendulum.at(degrees * pi / 180);
-      const auto stepper = make_stepper("rk4");
+      const auto stepper = Method("rk4").stepper();
       double t = 0, above = 0;
       while (state.x[0] > 0 && t < t0) {
         above = state.x[0];

@@ -108,15 +108,15 @@ BOOST_AUTO_TEST_CASE(the_linear_limit_of_a_cloth_parts_bounded_runs_from_divergi
   BOOST_TEST((k0.converged && !k0.indefinite));
   const State<Vector> start{1e-3 * random_vector(system.size(), 1), Vector::Zero(system.size())};
   const EnergyWatch watch{.initial_energy = energy(system, start)};
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       const MethodLimits limits =
-          method_limits(method.name, k0, {DampingModel::Kind::rayleigh, damping.d0, damping.alpha}, 1.5);
-      if (method.implicit) {
+          method_limits(method.name(), k0, {DampingModel::Kind::rayleigh, damping.d0, damping.alpha}, 1.5);
+      if (method.info().implicit) {
         BOOST_TEST((limits.status == LimitStatus::unlimited));
         continue;
       }
       BOOST_TEST((limits.status == LimitStatus::limited));
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       State<Vector> state = start;
       const SimulationResult below =
           simulate(system, *stepper, {0.98 * *limits.h_max, 1000, 16}, watch, state);
@@ -148,7 +148,7 @@ BOOST_AUTO_TEST_CASE(implicit_euler_stays_bounded_far_beyond_the_explicit_limits
     last = e;
     return true;
   };
-  const auto stepper = make_stepper("implicit-euler");
+  const auto stepper = Method("implicit-euler").stepper();
   const SimulationResult result = simulate(system, *stepper, {h, 40}, watch, state, observer);
   BOOST_TEST((result.status == StepStatus::done));
   BOOST_TEST(last < 0.1 * watch.initial_energy);
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(symplectic_euler_conserves_its_own_energy_for_ten_thousand_
     drift = std::max(drift, std::abs(own_energy(now) / own_start - 1));
     return true;
   };
-  const auto stepper = make_stepper("symplectic-euler");
+  const auto stepper = Method("symplectic-euler").stepper();
   const SimulationResult result =
       simulate(system, *stepper, {h, 10'000}, {.initial_energy = 3 * start, .slack = 1}, state, observer);
   BOOST_TEST((result.status == StepStatus::done));
@@ -189,11 +189,11 @@ BOOST_AUTO_TEST_CASE(symplectic_euler_conserves_its_own_energy_for_ten_thousand_
 
 BOOST_AUTO_TEST_CASE(the_observer_sees_every_state_from_the_first_on_and_can_stop) {
   BlockLinearSystem system = oscillator(4);
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       const double h = 0.01;
       State<Vector> state = displaced(3), alone = state;
       Record record;
-      const auto stepper = make_stepper(method.name);
+      const auto stepper = method.stepper();
       SimulationResult result = simulate(system, *stepper, {h, 7}, asleep, state, record.observer());
       BOOST_TEST((result.status == StepStatus::done));
       BOOST_REQUIRE_EQUAL(record.states.size(), 8U);
@@ -224,14 +224,14 @@ BOOST_AUTO_TEST_CASE(a_run_that_diverges_ends_at_its_last_checkpoint) {
   BlockLinearSystem system = oscillator(4);
   const double h = 1.5;  // Y = 9: beyond every explicit method
   for (const double slack : {10.0, 1e3, infinity})
-    for (const MethodInfo& method : all_methods()) {
-      if (method.implicit) continue;
-      BOOST_TEST_CONTEXT(method.name << ", slack " << slack) {
+    for (const Method& method : all_methods()) {
+      if (method.info().implicit) continue;
+      BOOST_TEST_CONTEXT(method.name() << ", slack " << slack) {
         State<Vector> state = displaced(3);
         const EnergyWatch watch{.initial_energy = energy(system, state), .slack = slack};
         Record record;
         const SimulationResult result =
-            simulate(system, *make_stepper(method.name), {h, 100'000}, watch, state, record.observer());
+            simulate(system, *method.stepper(), {h, 100'000}, watch, state, record.observer());
         BOOST_TEST((result.status == StepStatus::diverged));
         const long good_steps = static_cast<long>(record.states.size()) - 1;
         BOOST_TEST(result.failed_at == h * static_cast<double>(good_steps + 1), tolerance(1e-14));
@@ -244,7 +244,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_diverges_ends_at_its_last_checkpoint) {
         for (const State<Vector>& good : record.states)
           BOOST_TEST(std::sqrt(system.kinetic_energy(good.v)) <= slack * std::sqrt(watch.initial_energy));
         State<Vector> next = record.states.back();
-        const StepStatus status = make_stepper(method.name)->step(system, h, next);
+        const StepStatus status = method.stepper()->step(system, h, next);
         if (std::isfinite(slack)) {
           BOOST_TEST((status == StepStatus::done));
           BOOST_TEST(std::sqrt(system.kinetic_energy(next.v)) > slack * std::sqrt(watch.initial_energy));
@@ -257,7 +257,7 @@ BOOST_AUTO_TEST_CASE(a_run_that_diverges_ends_at_its_last_checkpoint) {
 }
 
 BOOST_AUTO_TEST_CASE(a_solve_that_fails_ends_the_run_with_its_reason) {
-  const auto stepper = make_stepper("implicit-euler");
+  const auto stepper = Method("implicit-euler").stepper();
   BlockLinearSystem buckling = oscillator(-4);
   State<Vector> state = displaced(3);
   SimulationResult result = simulate(buckling, *stepper, {0.6, 5}, asleep, state);  // 1 - 4h² < 0
@@ -290,15 +290,15 @@ BOOST_AUTO_TEST_CASE(a_failed_solve_is_planned_anew_from_where_it_failed) {
     BOOST_TEST((good.x == state.x));
     return std::optional(StepPlan{0.2, 3});
   };
-  const SimulationResult result =
-      simulate(system, *make_stepper("implicit-euler"), {0.6, 3}, asleep, state, record.observer(), policy);
+  const SimulationResult result = simulate(system, *Method("implicit-euler").stepper(), {0.6, 3}, asleep,
+                                           state, record.observer(), policy);
   BOOST_TEST((result.status == StepStatus::done));
   BOOST_TEST(result.steps == 9);
   BOOST_TEST(result.failures == 3);
   BOOST_TEST(asked == result.failures);
   BOOST_TEST(result.time == 1.8, tolerance(1e-14));
   State<Vector> alone = displaced(3);
-  simulate(system, *make_stepper("implicit-euler"), {0.2, 9}, asleep, alone);
+  simulate(system, *Method("implicit-euler").stepper(), {0.2, 9}, asleep, alone);
   BOOST_TEST((state.x == alone.x && state.v == alone.v));
   for (std::size_t i = 0; i < record.results.size(); ++i)
     BOOST_TEST(record.results[i].time == 0.2 * static_cast<double>(i), tolerance(1e-14));
@@ -307,9 +307,9 @@ BOOST_AUTO_TEST_CASE(a_failed_solve_is_planned_anew_from_where_it_failed) {
 // The whole of the rest is planned anew, from a checkpoint, and what happened since it leaves no trace.
 BOOST_AUTO_TEST_CASE(a_divergence_is_undone_back_to_the_checkpoint) {
   BlockLinearSystem system = oscillator(4);
-  for (const MethodInfo& method : all_methods()) {
-    if (method.implicit) continue;
-    BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) {
+    if (method.info().implicit) continue;
+    BOOST_TEST_CONTEXT(method.name()) {
       const double bad = 1.45, good = 0.01;  // Y = 8.41, beyond every explicit method without damping
       State<Vector> state = displaced(3);
       const EnergyWatch watch{.initial_energy = energy(system, state), .slack = 1e8};
@@ -323,15 +323,15 @@ BOOST_AUTO_TEST_CASE(a_divergence_is_undone_back_to_the_checkpoint) {
         at_checkpoint = from;
         return std::optional(StepPlan{good, 25, 5});
       };
-      const SimulationResult result = simulate(system, *make_stepper(method.name), {bad, 10'000, 6}, watch,
-                                               state, record.observer(), policy);
+      const SimulationResult result =
+          simulate(system, *method.stepper(), {bad, 10'000, 6}, watch, state, record.observer(), policy);
       BOOST_TEST((result.status == StepStatus::done));
       BOOST_TEST(result.failures == 1);
       const long kept = result.steps - 25;
       BOOST_TEST(kept % 18 == 0);  // three linearizations of six steps
       BOOST_TEST(static_cast<long>(record.states.size()) > kept + 26);
       BOOST_TEST(result.time == static_cast<double>(kept) * bad + 25 * good, tolerance(1e-13));
-      simulate(system, *make_stepper(method.name), {good, 25, 5}, asleep, at_checkpoint);
+      simulate(system, *method.stepper(), {good, 25, 5}, asleep, at_checkpoint);
       BOOST_TEST((state.x == at_checkpoint.x && state.v == at_checkpoint.v));
     }
   }
@@ -349,9 +349,9 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_checkpoint_as_if_it_had_not_stopped)
     return std::optional(StepPlan{h, std::lround(rest / h / static_cast<double>(each)) * each, each});
   };
   long failures = 0, resumed = 0;
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
-      const double h = method.implicit ? 0.02 : 0.008;
-      const StepPlan plan{h, std::lround(duration / h), method.linearized ? 5 : 1};
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
+      const double h = method.info().implicit ? 0.02 : 0.008;
+      const StepPlan plan{h, std::lround(duration / h), method.info().linearized ? 5 : 1};
       Scene scene = cloth(5, {1, 1e-4});
       State<Vector> start = scene.rest_state();
       for (double& x : start.x) x *= 0.9;
@@ -360,7 +360,7 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_checkpoint_as_if_it_had_not_stopped)
       std::vector<std::pair<RunSoFar, State<Vector>>> checkpoints;
       State<Vector> end = start;
       const SimulationResult whole = simulate(
-          scene, *make_stepper(method.name), plan, watch, end,
+          scene, *method.stepper(), plan, watch, end,
           [&](const RunSoFar& so_far, const State<Vector>& state) {
             if (so_far.at_checkpoint) checkpoints.emplace_back(so_far, state);
             return true;
@@ -372,7 +372,7 @@ BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_checkpoint_as_if_it_had_not_stopped)
         Scene another = cloth(5, {1, 1e-4});
         State<Vector> s = state;
         const SimulationResult rest =
-            resume_simulation(another, *make_stepper(method.name), run, watch, s, {}, shorter);
+            resume_simulation(another, *method.stepper(), run, watch, s, {}, shorter);
         ++resumed;
         BOOST_TEST((s.x == end.x && s.v == end.v));
         BOOST_TEST((rest.steps == whole.steps && rest.time == whole.time && rest.failures == whole.failures));
@@ -389,7 +389,7 @@ BOOST_AUTO_TEST_CASE(a_gain_of_energy_ends_a_run_at_a_checkpoint) {
   const double start = energy(system, state), h = 0.02;  // explicit Euler gains a factor of 1 + Y a step
   const EnergyWatch watch{.initial_energy = start, .slack = 1e6, .initial_total = start, .largest_gain = 1};
   const SimulationResult result =
-      simulate(system, *make_stepper("explicit-euler"), {h, 10'000}, watch, state);
+      simulate(system, *Method("explicit-euler").stepper(), {h, 10'000}, watch, state);
   BOOST_TEST((result.status == StepStatus::diverged));
   const double growth = 1 + 4 * h * h;
   const long doubled = static_cast<long>(std::ceil(std::log(2) / std::log(growth) / 16)) * 16;
@@ -410,7 +410,7 @@ BOOST_AUTO_TEST_CASE(the_watch_stands_where_free_fall_gets) {
   const auto run = [&](double slack) {
     State<Vector> state = scene.rest_state();
     watch.slack = slack;
-    return simulate(scene, *make_stepper("rk4"), {0.01, 100}, watch, state).status;
+    return simulate(scene, *Method("rk4").stepper(), {0.01, 100}, watch, state).status;
   };
   BOOST_TEST((run(1 + 1e-12) == StepStatus::done));
   BOOST_TEST((run(1 - 1e-12) == StepStatus::diverged));
@@ -440,7 +440,7 @@ BOOST_AUTO_TEST_CASE(the_watch_never_fires_in_a_passive_motion) {
       return true;
     };
     const SimulationResult result =
-        simulate(scene, *make_stepper("rk4"), {1e-4, 8000}, watch, state, observer);
+        simulate(scene, *Method("rk4").stepper(), {1e-4, 8000}, watch, state, observer);
     BOOST_TEST((result.status == StepStatus::done));
     BOOST_TEST(nearest < 1);
     BOOST_TEST(nearest > 0.4);
@@ -502,7 +502,7 @@ BOOST_AUTO_TEST_CASE(the_watch_allows_for_what_stable_steps_may_grow) {
 BOOST_AUTO_TEST_CASE(rounding_at_rest_is_no_divergence) {
   for (const Material& material : {Material(SpringMaterial{}), Material(ClothMaterial{})})
     for (const double spacing : {0.1, 1e3})
-      for (const MethodInfo& method : all_methods()) {
+      for (const Method& method : all_methods()) {
         SceneDescription description;
         description.geometry = Grid{5, 4, spacing};
         description.material = material;
@@ -511,16 +511,16 @@ BOOST_AUTO_TEST_CASE(rounding_at_rest_is_no_divergence) {
         description.damping = {.d0 = 1, .alpha = std::nullopt};
         Subject subject(description);
         SimulateOptions options;
-        options.method = method.name;
+        options.method = method.name();
         options.duration = 0.5;
         const CommonOptions common;
         StepChooser chooser(subject, common, options);
         const StepPlan plan = chooser.first_plan().value();
         const State<Vector> start = subject.initial_state(1);
         State<Vector> state = start;
-        const SimulationResult result = simulate(subject.system(), *make_stepper(method.name), plan,
+        const SimulationResult result = simulate(subject.system(), *method.stepper(), plan,
                                                  chooser.watch(start), state, {}, chooser.policy());
-        BOOST_TEST_CONTEXT(method.name << ", material " << material.index() << ", spacing " << spacing) {
+        BOOST_TEST_CONTEXT(method.name() << ", material " << material.index() << ", spacing " << spacing) {
           BOOST_TEST((result.status == StepStatus::done));
           BOOST_TEST(result.failures == 0);
           BOOST_TEST((state.x - start.x).cwiseAbs().maxCoeff() < 1e-9 * spacing);
@@ -554,7 +554,7 @@ BOOST_AUTO_TEST_CASE(a_linearized_run_that_goes_wrong_is_undone_and_saved) {
       return true;
     };
     const SimulationResult result =
-        simulate(subject.system(), *make_stepper(method), plan, watch, state, observer, chooser.policy());
+        simulate(subject.system(), *Method(method).stepper(), plan, watch, state, observer, chooser.policy());
     rollbacks = chooser.rollbacks();
     BOOST_TEST((result.status == (step ? StepStatus::diverged : StepStatus::done)));
     if (!step) BOOST_TEST(last_time == 0.5, tolerance(1e-9));
@@ -586,25 +586,24 @@ BOOST_AUTO_TEST_CASE(a_step_costs_what_its_method_says) {
       {"linearized-rk4", {1, 1, 5, 0}},
   };
   for (const double own_damping : {0.0, 1e-4})
-    for (const MethodInfo& method : all_methods())
-      BOOST_TEST_CONTEXT(method.name << ", own damping " << own_damping) {
-        const auto cost = known.find(std::string(method.name));
+    for (const Method& method : all_methods())
+      BOOST_TEST_CONTEXT(method.name() << ", own damping " << own_damping) {
+        const auto cost = known.find(std::string(method.name()));
         BOOST_REQUIRE(cost != known.end());
         Scene scene = cloth(6, {1, 1e-4}, own_damping);
         State<Vector> state = scene.rest_state(), alone = state;
         CountingSystem counting(scene);
         constexpr long steps = 5;
-        const SimulationResult result =
-            simulate(counting, *make_stepper(method.name), {1e-4, steps}, asleep, state);
+        const SimulationResult result = simulate(counting, *method.stepper(), {1e-4, steps}, asleep, state);
         BOOST_TEST((result.status == StepStatus::done));
         const Counts& counts = counting.counts();
         BOOST_TEST(counts.force_evaluations == steps * cost->second.force_evaluations);
         BOOST_TEST(counts.hessian_assemblies == steps * cost->second.hessian_assemblies);
-        BOOST_TEST((counts.cg_iterations > 0) == method.implicit);
-        if (own_damping == 0 || method.implicit)  // an iteration multiplies by the sum of all matrices
+        BOOST_TEST((counts.cg_iterations > 0) == method.info().implicit);
+        if (own_damping == 0 || method.info().implicit)  // an iteration multiplies by the sum of all matrices
           BOOST_TEST(counts.block_products == steps * cost->second.block_products + counts.cg_iterations);
 
-        simulate(scene, *make_stepper(method.name), {1e-4, steps}, asleep, alone);
+        simulate(scene, *method.stepper(), {1e-4, steps}, asleep, alone);
         BOOST_TEST((state.x == alone.x && state.v == alone.v));
         BOOST_TEST((state.x != scene.rest_state().x));
         BOOST_TEST(counting.size() == scene.size());
@@ -620,10 +619,10 @@ BOOST_AUTO_TEST_CASE(a_factorization_takes_the_steps_of_conjugate_gradients) {
     State<Vector> by_iteration = scene.rest_state(), by_factorization = by_iteration;
     constexpr long steps = 20;
     scene.solver().tolerance = 1e-12;
-    simulate(iterated, *make_stepper("implicit-euler"), {0.01, steps}, asleep, by_iteration);
+    simulate(iterated, *Method("implicit-euler").stepper(), {0.01, steps}, asleep, by_iteration);
     scene.solver().kind = SolverKind::cholesky;
     const SimulationResult result =
-        simulate(factorized, *make_stepper("implicit-euler"), {0.01, steps}, asleep, by_factorization);
+        simulate(factorized, *Method("implicit-euler").stepper(), {0.01, steps}, asleep, by_factorization);
     BOOST_TEST((result.status == StepStatus::done));
     BOOST_TEST((by_factorization.x - by_iteration.x).norm() <= 1e-9 * by_iteration.x.norm());
     BOOST_TEST((by_iteration.x - scene.rest_state().x).norm() > 0.01);
@@ -642,7 +641,7 @@ BOOST_AUTO_TEST_CASE(a_factorization_refuses_a_compressed_net_at_a_long_step) {
   const State<Vector> before = state;
   for (const SolverKind kind : {SolverKind::conjugate_gradients, SolverKind::cholesky}) {
     scene.solver().kind = kind;
-    const auto stepper = make_stepper("implicit-euler");
+    const auto stepper = Method("implicit-euler").stepper();
     BOOST_TEST((stepper->step(scene, 0.1, state) == StepStatus::not_positive_definite));
     BOOST_TEST((state.x == before.x && state.v == before.v));
     State<Vector> shorter = before;
@@ -652,14 +651,14 @@ BOOST_AUTO_TEST_CASE(a_factorization_refuses_a_compressed_net_at_a_long_step) {
 
 BOOST_AUTO_TEST_CASE(nothing_is_allocated_after_the_first_step) {
   for (const double own_damping : {0.0, 1e-4})
-    for (const MethodInfo& method : all_methods())
+    for (const Method& method : all_methods())
       for (const SolverKind solver : {SolverKind::conjugate_gradients, SolverKind::cholesky})
-        BOOST_TEST_CONTEXT(method.name << ", own damping " << own_damping) {
-          if (solver == SolverKind::cholesky && !method.implicit) continue;
+        BOOST_TEST_CONTEXT(method.name() << ", own damping " << own_damping) {
+          if (solver == SolverKind::cholesky && !method.info().implicit) continue;
           Scene scene = cloth(6, {1, 1e-4}, own_damping);
           scene.solver().kind = solver;
           State<Vector> state = scene.rest_state();
-          const auto stepper = make_stepper(method.name);
+          const auto stepper = method.stepper();
           long after_first = 0, at_last = 0;
           const Observer observer = [&](const SimulationResult& so_far, const State<Vector>&) {
             (so_far.steps <= 1 ? after_first : at_last) = allocations();
@@ -679,8 +678,8 @@ BOOST_AUTO_TEST_CASE(explicit_euler_with_alpha_h_takes_symplectic_eulers_steps_o
   BlockLinearSystem& a = stretched(damped, 7);
   BlockLinearSystem& b = stretched(plain, 7);
   State<Vector> one{1e-3 * random_vector(a.size(), 1), random_vector(a.size(), 2)}, other = one;
-  const auto explicit_euler = make_stepper("explicit-euler"),
-             symplectic_euler = make_stepper("symplectic-euler");
+  const auto explicit_euler = Method("explicit-euler").stepper(),
+             symplectic_euler = Method("symplectic-euler").stepper();
   for (int i = 0; i < 100; ++i) {
     BOOST_REQUIRE((explicit_euler->step(a, h, one) == StepStatus::done));
     BOOST_REQUIRE((symplectic_euler->step(b, h, other) == StepStatus::done));
@@ -699,7 +698,7 @@ BOOST_AUTO_TEST_CASE(a_linearized_method_is_the_one_inside_where_forces_are_line
     Scene scene = cloth(6, {1, 1e-4});
     BlockLinearSystem& linear = stretched(scene, 6);
     State<Vector> one{1e-3 * random_vector(linear.size(), 3), random_vector(linear.size(), 4)}, other = one;
-    const auto frozen = make_stepper(linearized), free = make_stepper(plain);
+    const auto frozen = Method(linearized).stepper(), free = Method(plain).stepper();
     const auto run = [&](System& system, double h, int steps) {
       frozen->restart(7);
       for (int i = 0; i < steps; ++i) {

@@ -24,7 +24,6 @@
 #include "solvers/io/matrix_file.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"
-#include "solvers/stepper.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(spectrum)
@@ -278,7 +277,7 @@ StructuralMatrices matrices_of(BlockLinearSystem& system) {
 double modal_radius(std::string_view method, const Vector& squares, RayleighDamping damping, double h) {
   double radius = 0;
   for (const double k : squares) {
-    const Eigen::Matrix2d a = amplification_matrix(method, h * (damping.d0 + damping.alpha * k), h * h * k);
+    const Eigen::Matrix2d a = Method(method).amplification(h * (damping.d0 + damping.alpha * k), h * h * k);
     radius = std::max(radius, a.eigenvalues().cwiseAbs().maxCoeff());
   }
   return radius;
@@ -486,9 +485,10 @@ BOOST_AUTO_TEST_CASE(what_did_not_converge_is_not_reported) {
   BOOST_TEST(!mode.converged);
   BOOST_TEST(mode.upper_bound == 4, tolerance(1e-10));  // Gershgorin's
   BOOST_TEST((mode.bound_kind == BoundKind::gershgorin));
-  for (const MethodInfo& method : all_methods())
-    for (const DampingModel& damping : {DampingModel{}, rayleigh(0.1, 0.1)}) BOOST_TEST_CONTEXT(method.name) {
-        const MethodLimits limits = method_limits(method.name, mode, damping, 1.5);
+  for (const Method& method : all_methods())
+    for (const DampingModel& damping : {DampingModel{}, rayleigh(0.1, 0.1)})
+      BOOST_TEST_CONTEXT(method.name()) {
+        const MethodLimits limits = method_limits(method.name(), mode, damping, 1.5);
         BOOST_TEST((limits.status == LimitStatus::unknown));
         BOOST_TEST((!limits.h_max && !limits.h_certified && !limits.recommended && !limits.designed));
       }
@@ -724,8 +724,8 @@ BOOST_AUTO_TEST_CASE(small_and_empty_structures_have_a_stiffest_mode) {
     BOOST_TEST(none.value == 0);
     BOOST_TEST(none.upper_bound == 0);
     BOOST_TEST(!none.indefinite);
-    for (const MethodInfo& method : all_methods())
-      BOOST_TEST((method_limits(method.name, none, {}, 1.5).status == LimitStatus::unlimited));
+    for (const Method& method : all_methods())
+      BOOST_TEST((method_limits(method.name(), none, {}, 1.5).status == LimitStatus::unlimited));
   }
 }
 
@@ -752,10 +752,10 @@ BOOST_AUTO_TEST_CASE(real_structures_have_the_k0_that_others_computed) {
                    tolerance(100 * eps * k0 / *mode.smallest));
 
       const double h0 = 1 / std::sqrt(k0);
-      for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
-          if (method.linearized) continue;  // on a linear system, its own explicit method
-          const MethodLimits undamped = method_limits(method.name, mode, {}, 1.5);
-          const RegionConstants& region = stability_region(method.name).constants();
+      for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
+          if (method.info().linearized) continue;  // on a linear system, its own explicit method
+          const MethodLimits undamped = method_limits(method.name(), mode, {}, 1.5);
+          const RegionConstants& region = stability_region(method.name()).constants();
           if (region.covers_quadrant) {
             BOOST_TEST((undamped.status == LimitStatus::unlimited));
             BOOST_TEST((undamped.h_max == infinity && undamped.h_certified == infinity));
@@ -782,7 +782,7 @@ BOOST_AUTO_TEST_CASE(real_structures_have_the_k0_that_others_computed) {
                  {std::pair{0.05, 0.0}, {3.0, 0.0}, {0.0, 0.02}, {0.0, 5.0}, {0.05, 0.3}})
               dampings.push_back(rayleigh(d0 / h0, alpha * h0));
           for (const DampingModel& damping : dampings) {
-            const MethodLimits limits = method_limits(method.name, mode, damping, 1.5);
+            const MethodLimits limits = method_limits(method.name(), mode, damping, 1.5);
             BOOST_TEST_CONTEXT("d0 " << damping.d0 << " alpha " << damping.alpha) {
               BOOST_TEST(limits.h_max.has_value() == (limits.status != LimitStatus::none));
               BOOST_TEST((limits.status == LimitStatus::unlimited) == region.covers_quadrant);
@@ -890,17 +890,17 @@ BOOST_AUTO_TEST_CASE(general_damping_is_known_to_be_harmless_or_unknown) {
   negative.semidefinite = false;
   StiffestMode buckling = exactly(100);
   buckling.indefinite = true;
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
-      const MethodLimits limits = method_limits(method.name, exactly(100), general, 1.5);
-      if (method.name == "implicit-euler") {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
+      const MethodLimits limits = method_limits(method.name(), exactly(100), general, 1.5);
+      if (method.name() == "implicit-euler") {
         BOOST_TEST((limits.status == LimitStatus::unlimited));
         BOOST_TEST((limits.h_max == infinity && limits.h_certified == infinity));
       } else {
         BOOST_TEST((limits.status == LimitStatus::unknown));
         BOOST_TEST((!limits.h_max && !limits.h_certified && !limits.recommended));
       }
-      for (const MethodLimits& nothing : {method_limits(method.name, exactly(100), negative, 1.5),
-                                          method_limits(method.name, buckling, general, 1.5)}) {
+      for (const MethodLimits& nothing : {method_limits(method.name(), exactly(100), negative, 1.5),
+                                          method_limits(method.name(), buckling, general, 1.5)}) {
         BOOST_TEST((nothing.status == LimitStatus::unknown));
         BOOST_TEST((!nothing.h_max && !nothing.h_certified));
       }
@@ -913,20 +913,20 @@ BOOST_AUTO_TEST_CASE(a_step_is_certified_by_the_bound_on_k0_and_by_nothing_else)
   buckling.indefinite = true;
   DampingModel designed = rayleigh(0, 0);
   designed.kind = DampingModel::Kind::designed;
-  for (const MethodInfo& method : all_methods()) BOOST_TEST_CONTEXT(method.name) {
+  for (const Method& method : all_methods()) BOOST_TEST_CONTEXT(method.name()) {
       for (const DampingModel& damping : {DampingModel{}, designed}) {
-        const MethodLimits limits = method_limits(method.name, mode, damping, 1.5);
+        const MethodLimits limits = method_limits(method.name(), mode, damping, 1.5);
         if (limits.status == LimitStatus::limited)
           BOOST_TEST(*limits.h_max / limits.h_certified.value() == 1.1, tolerance(1e-10));
         BOOST_TEST(limits.h_certified.has_value() == limits.h_max.has_value());
       }
       for (const DampingModel& damping : {DampingModel{}, designed, rayleigh(0.1, 0.1)}) {
-        BOOST_TEST(!method_limits(method.name, buckling, damping, 1.5).h_certified);
+        BOOST_TEST(!method_limits(method.name(), buckling, damping, 1.5).h_certified);
         StiffestMode unproved = mode;
         unproved.upper_bound = infinity;
-        const MethodLimits limits = method_limits(method.name, unproved, damping, 1.5);
+        const MethodLimits limits = method_limits(method.name(), unproved, damping, 1.5);
         BOOST_TEST(!limits.h_certified);
-        BOOST_TEST((limits.h_max == method_limits(method.name, mode, damping, 1.5).h_max));
+        BOOST_TEST((limits.h_max == method_limits(method.name(), mode, damping, 1.5).h_max));
       }
     }
 }
@@ -947,22 +947,23 @@ BOOST_AUTO_TEST_CASE(the_transition_matrix_has_the_spectral_radius_of_its_modes)
     const StiffestMode k0 = stiffest_mode(matrices);
     check_encloses(k0, squares[squares.size() - 1]);
 
-    for (const MethodInfo& method : all_methods()) {
-      const MethodLimits limits = method_limits(method.name, k0, rayleigh(damping.d0, damping.alpha), 1.5);
+    for (const Method& method : all_methods()) {
+      const MethodLimits limits = method_limits(method.name(), k0, rayleigh(damping.d0, damping.alpha), 1.5);
       const bool limited = limits.status == LimitStatus::limited;
-      BOOST_TEST(limited == !method.implicit);
+      BOOST_TEST(limited == !method.info().implicit);
       const double h_max = limited ? *limits.h_max : 1e-3;
       for (const double part : {0.3, 0.9, 1.02, 1.3}) {
         const double h = part * h_max;
-        BOOST_TEST_CONTEXT(method.name << ", " << rows << " x " << columns << ", h = " << part << " h_max") {
+        BOOST_TEST_CONTEXT(method.name()
+                           << ", " << rows << " x " << columns << ", h = " << part << " h_max") {
           const bool above = limited && part > 1;
           if (!above && rows > 3) continue;  // the slow modes cluster near 1: small systems only
-          const LinearOperator a = transition_operator(system, method.name, h);
+          const LinearOperator a = transition_operator(system, method.name(), h);
           BOOST_TEST(a.size == 2 * system.size());
           const Eigenvalues found =
               dominant_eigenvalues(a, 2, {.tolerance = 1e-12, .basis_size = rows > 3 ? 100 : 36});
           BOOST_REQUIRE(found.converged);
-          const double expected = modal_radius(method.name, squares, damping, h);
+          const double expected = modal_radius(method.name(), squares, damping, h);
           BOOST_TEST(std::abs(found.values[0]) == expected, tolerance(1e-8));
           BOOST_TEST((expected > 1) == above);
         }

@@ -15,7 +15,6 @@
 #include "analysis/regions/polynomial.h"
 #include "analysis/regions/stability_region.h"
 #include "oracles.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(stability_region)
 
@@ -178,17 +177,17 @@ BOOST_AUTO_TEST_CASE(constants_to_ten_digits) {
 
 // Attained or not is what powers of A at the apex do.
 BOOST_AUTO_TEST_CASE(powers_at_the_apex_stay_bounded_where_it_is_attained) {
-  for (const MethodInfo& method : all_methods()) {
-    const RegionConstants& c = region_of(method.name).constants();
+  for (const Method& method : all_methods()) {
+    const RegionConstants& c = region_of(method.name()).constants();
     if (!std::isfinite(c.y_max)) continue;
-    const Eigen::Matrix2d a = amplification_matrix(method.name, c.x_at_y_max, c.y_max);
+    const Eigen::Matrix2d a = method.amplification(c.x_at_y_max, c.y_max);
     Eigen::Matrix2d power = Eigen::Matrix2d::Identity();
     double early = 0, late = 0;
     for (int n = 1; n <= 4000; ++n) {
       power = power * a;
       (n <= 500 ? early : late) = std::max(n <= 500 ? early : late, power.norm());
     }
-    BOOST_TEST((late < 2 * early) == c.y_max_attained, method.name << ": " << early << ", later " << late);
+    BOOST_TEST((late < 2 * early) == c.y_max_attained, method.name() << ": " << early << ", later " << late);
   }
 }
 
@@ -267,8 +266,8 @@ BOOST_AUTO_TEST_CASE(areas) {
 }
 
 BOOST_AUTO_TEST_CASE(counts_of_raster_cells_converge_to_the_area) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     const Window w = region.natural_window(0.1);
     const double area = region.area(w), width = w.x_max - w.x_min, height = w.y_max - w.y_min;
     for (const int n : {100, 400}) {
@@ -277,12 +276,12 @@ BOOST_AUTO_TEST_CASE(counts_of_raster_cells_converge_to_the_area) {
       std::uniform_real_distribution<double> within(-0.5, 0.5);
       std::vector<Point> points = cells(w, n);
       for (Point& p : points) p = {p.x + within(random) * width / n, p.y + within(random) * height / n};
-      const std::vector<double> rho = radii(method.name, points);
+      const std::vector<double> rho = radii(method.name(), points);
       const auto stable = std::count_if(rho.begin(), rho.end(), [](double r) { return r < 1; });
       const double cell = width * height / n / n, counted = static_cast<double>(stable) * cell;
       // The boundary cuts at most about 4n cells, each a coin toss: five standard deviations.
       BOOST_TEST(std::abs(counted - area) < 5 * 0.5 * std::sqrt(4 * n) * cell,
-                 method.name << ": " << counted << " by " << n << "² cells, " << area);
+                 method.name() << ": " << counted << " by " << n << "² cells, " << area);
     }
   }
 }
@@ -324,11 +323,11 @@ BOOST_AUTO_TEST_CASE(rk4_has_two_apexes_and_a_sliver_of_negative_damping) {
 }
 
 BOOST_AUTO_TEST_CASE(every_boundary_point_has_radius_one_and_only_one_stable_side) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     const Window window = region.natural_window(0.1);
     const auto arcs = region.boundary(window);
-    BOOST_TEST(!arcs.empty(), method.name);
+    BOOST_TEST(!arcs.empty(), method.name());
     int sides = 0;
     for (BoundaryArc arc : arcs) {
       BOOST_TEST_REQUIRE(arc.x.size() == arc.y.size());
@@ -345,49 +344,50 @@ BOOST_AUTO_TEST_CASE(every_boundary_point_has_radius_one_and_only_one_stable_sid
       };
       const double length = distance(0, arc.x.size() - 1);
       for (std::size_t i = 0; i < arc.x.size(); ++i) {
-        const double x = arc.x[i], y = arc.y[i], rho = radius(method.name, x, y);
+        const double x = arc.x[i], y = arc.y[i], rho = radius(method.name(), x, y);
         // Where λ₁ and λ₂ meet, a rounding error moves them by its square root.
-        const Eigen::Matrix2d a = amplification_matrix(method.name, x, y);
+        const Eigen::Matrix2d a = method.amplification(x, y);
         const double error = std::max(1e-9, 10 * oracles::eigenvalues(a, a.cwiseAbs()).error);
         BOOST_TEST(std::abs(rho - 1) <= std::max(error, 1e-9),
-                   method.name << " at (" << x << ", " << y << "): rho - 1 = " << rho - 1);
+                   method.name() << " at (" << x << ", " << y << "): rho - 1 = " << rho - 1);
         const double off = 1e-5;  // away from vertices, where other arcs come near
         if (i == 0 || i + 1 == arc.x.size() || distance(0, i) < 0.1 * length ||
             distance(i, arc.x.size() - 1) < 0.1 * length || length < 0.1)
           continue;
         const double dx = arc.x[i + 1] - arc.x[i - 1], dy = arc.y[i + 1] - arc.y[i - 1],
                      d = std::hypot(dx, dy);
-        const double left = radius(method.name, x - off * dy / d, y + off * dx / d);
-        const double right = radius(method.name, x + off * dy / d, y - off * dx / d);
-        BOOST_TEST((left < 1) != (right < 1), method.name << " at (" << x << ", " << y << "), bound "
-                                                          << static_cast<int>(arc.bound) << ": " << left
-                                                          << ", " << right);
+        const double left = radius(method.name(), x - off * dy / d, y + off * dx / d);
+        const double right = radius(method.name(), x + off * dy / d, y - off * dx / d);
+        BOOST_TEST((left < 1) != (right < 1), method.name() << " at (" << x << ", " << y << "), bound "
+                                                            << static_cast<int>(arc.bound) << ": " << left
+                                                            << ", " << right);
         ++sides;
         // The bound says which eigenvalue is on the circle.
         const auto value = oracles::eigenvalues(a, a.cwiseAbs()).value;
         const auto at = [&](Complex lambda) {
           return std::min(std::abs(value[0] - lambda), std::abs(value[1] - lambda)) < 1e-6;
         };
-        if (arc.bound == Bound::plus_one) BOOST_TEST(at(1), method.name << " at (" << x << ", " << y << ")");
+        if (arc.bound == Bound::plus_one)
+          BOOST_TEST(at(1), method.name() << " at (" << x << ", " << y << ")");
         if (arc.bound == Bound::minus_one)
-          BOOST_TEST(at(-1), method.name << " at (" << x << ", " << y << ")");
+          BOOST_TEST(at(-1), method.name() << " at (" << x << ", " << y << ")");
         if (arc.bound == Bound::complex_pair)
-          BOOST_TEST(std::abs(a.determinant() - 1) < 1e-6, method.name << " at (" << x << ", " << y << ")");
+          BOOST_TEST(std::abs(a.determinant() - 1) < 1e-6, method.name() << " at (" << x << ", " << y << ")");
       }
     }
-    BOOST_TEST(sides > 100, method.name);
+    BOOST_TEST(sides > 100, method.name());
   }
 }
 
 // Nothing is missing from the boundary: where the raster changes from stable to not, an arc is near.
 BOOST_AUTO_TEST_CASE(the_raster_changes_only_at_the_boundary) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     const Window w = region.natural_window(0.1);
     const auto arcs = region.boundary(w);
     constexpr int n = 60;
     const std::vector<Point> points = cells(w, n);
-    const std::vector<double> rho = radii(method.name, points);
+    const std::vector<double> rho = radii(method.name(), points);
     const double cell = std::hypot((w.x_max - w.x_min) / n, (w.y_max - w.y_min) / n);
     const auto gap = [&](const Point& p) {  // to the nearest segment
       double nearest = inf;
@@ -408,15 +408,15 @@ BOOST_AUTO_TEST_CASE(the_raster_changes_only_at_the_boundary) {
           if ((rho[j * n + i] < 1) == (rho[neighbour] < 1)) continue;
           ++changes;
           BOOST_TEST(gap(points[j * n + i]) <= cell,
-                     method.name << " near (" << points[j * n + i].x << ", " << points[j * n + i].y << ")");
+                     method.name() << " near (" << points[j * n + i].x << ", " << points[j * n + i].y << ")");
         }
-    BOOST_TEST(changes > 50, method.name);
+    BOOST_TEST(changes > 50, method.name());
   }
 }
 
 BOOST_AUTO_TEST_CASE(filled_pieces_are_stable_and_add_up_to_the_area) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     const Window window = region.natural_window(0.1);
     double sum = 0;
     for (const RegionPiece& piece : region.pieces(window)) {
@@ -426,22 +426,22 @@ BOOST_AUTO_TEST_CASE(filled_pieces_are_stable_and_add_up_to_the_area) {
         sum += heights / 2 * (piece.x[i + 1] - piece.x[i]);
         if (piece.y_upper[i] - piece.y_lower[i] > 1e-6) {
           const double middle = (piece.y_lower[i] + piece.y_upper[i]) / 2;
-          BOOST_TEST(radius(method.name, piece.x[i], middle) < 1,
-                     method.name << " at (" << piece.x[i] << ", " << middle << ")");
+          BOOST_TEST(radius(method.name(), piece.x[i], middle) < 1,
+                     method.name() << " at (" << piece.x[i] << ", " << middle << ")");
         }
       }
     }
     const double area = region.area(window);
-    BOOST_TEST(std::abs(sum - area) < 2e-3 * area, method.name << ": " << sum << " of " << area);
+    BOOST_TEST(std::abs(sum - area) < 2e-3 * area, method.name() << ": " << sum << " of " << area);
   }
 }
 
 BOOST_AUTO_TEST_CASE(the_natural_window_is_the_smallest_that_holds_the_region) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     const Window w = region.natural_window(0);
     if (!std::isfinite(region.constants().y_max)) {
-      BOOST_TEST((w.x_min == -8 && w.x_max == 8 && w.y_min == -8 && w.y_max == 8), method.name);
+      BOOST_TEST((w.x_min == -8 && w.x_max == 8 && w.y_min == -8 && w.y_max == 8), method.name());
       continue;
     }
     const double dx = w.x_max - w.x_min, dy = w.y_max - w.y_min;
@@ -449,33 +449,34 @@ BOOST_AUTO_TEST_CASE(the_natural_window_is_the_smallest_that_holds_the_region) {
     for (const Point& p : random_points(wide, 4000, 2)) {
       const bool inside = p.x > w.x_min && p.x < w.x_max && p.y > w.y_min && p.y < w.y_max;
       if (!inside)
-        BOOST_TEST(radius(method.name, p.x, p.y) >= 1, method.name << " at (" << p.x << ", " << p.y << ")");
+        BOOST_TEST(radius(method.name(), p.x, p.y) >= 1, method.name()
+                                                             << " at (" << p.x << ", " << p.y << ")");
     }
     const double all = region.area(wide), thin = 1e-3;
-    BOOST_TEST(std::abs(region.area(w) - all) < 1e-9 * all, method.name);
-    BOOST_TEST(region.area({w.x_min, w.x_min + thin * dx, w.y_min, w.y_max}) > 0, method.name);
-    BOOST_TEST(region.area({w.x_max - thin * dx, w.x_max, w.y_min, w.y_max}) > 0, method.name);
-    BOOST_TEST(region.area({w.x_min, w.x_max, w.y_min, w.y_min + thin * dy}) > 0, method.name);
-    BOOST_TEST(region.area({w.x_min, w.x_max, w.y_max - thin * dy, w.y_max}) > 0, method.name);
+    BOOST_TEST(std::abs(region.area(w) - all) < 1e-9 * all, method.name());
+    BOOST_TEST(region.area({w.x_min, w.x_min + thin * dx, w.y_min, w.y_max}) > 0, method.name());
+    BOOST_TEST(region.area({w.x_max - thin * dx, w.x_max, w.y_min, w.y_max}) > 0, method.name());
+    BOOST_TEST(region.area({w.x_min, w.x_max, w.y_min, w.y_min + thin * dy}) > 0, method.name());
+    BOOST_TEST(region.area({w.x_min, w.x_max, w.y_max - thin * dy, w.y_max}) > 0, method.name());
     const Window margin = region.natural_window(0.25);
-    BOOST_TEST(std::abs(margin.x_min - (w.x_min - 0.25 * dx)) < 1e-12 * dx, method.name);
-    BOOST_TEST(std::abs(margin.y_max - (w.y_max + 0.25 * dy)) < 1e-12 * dy, method.name);
+    BOOST_TEST(std::abs(margin.x_min - (w.x_min - 0.25 * dx)) < 1e-12 * dx, method.name());
+    BOOST_TEST(std::abs(margin.y_max - (w.y_max + 0.25 * dy)) < 1e-12 * dy, method.name());
   }
 }
 
 BOOST_AUTO_TEST_CASE(intervals_along_lines_and_parabolas_are_where_the_radius_is_below_one) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> offset(-1, 6), slope(-3, 3);
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     int stable = 0, unstable = 0;
     for (int line = 0; line < 60; ++line) {
       const Curve curve{{{offset(random), slope(random)}},
                         {{offset(random), slope(random), line % 2 ? 0 : slope(random) / 3}}};
       const auto intervals = region.stable_intervals(curve, -4, 5);
       for (std::size_t i = 0; i < intervals.size(); ++i) {
-        BOOST_TEST(intervals[i].lower < intervals[i].upper, method.name);
-        if (i > 0) BOOST_TEST(intervals[i - 1].upper <= intervals[i].lower, method.name);
+        BOOST_TEST(intervals[i].lower < intervals[i].upper, method.name());
+        if (i > 0) BOOST_TEST(intervals[i - 1].upper <= intervals[i].lower, method.name());
       }
       std::vector<Point> points;
       std::vector<double> at;
@@ -483,79 +484,79 @@ BOOST_AUTO_TEST_CASE(intervals_along_lines_and_parabolas_are_where_the_radius_is
         at.push_back(-4 + 9 * (i + 0.37) / 300);
         points.push_back({curve.x(at.back()), curve.y(at.back())});
       }
-      const std::vector<double> rho = radii(method.name, points);
+      const std::vector<double> rho = radii(method.name(), points);
       for (std::size_t i = 0; i < rho.size(); ++i) {
         if (std::abs(rho[i] - 1) < 1e-9) continue;
         const bool in = std::any_of(intervals.begin(), intervals.end(), [&](const StableInterval& s) {
           return at[i] > s.lower && at[i] < s.upper;
         });
         ++(in ? stable : unstable);
-        BOOST_TEST(in == (rho[i] < 1), method.name << " at (" << points[i].x << ", " << points[i].y << ")");
+        BOOST_TEST(in == (rho[i] < 1), method.name() << " at (" << points[i].x << ", " << points[i].y << ")");
       }
     }
-    BOOST_TEST(stable > 300, method.name);
-    BOOST_TEST(unstable > 300, method.name);
+    BOOST_TEST(stable > 300, method.name());
+    BOOST_TEST(unstable > 300, method.name());
   }
 }
 
 BOOST_AUTO_TEST_CASE(the_best_damping_line_is_neutral_or_stable_and_none_reaches_higher) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     if (region.constants().covers_quadrant) {
-      BOOST_TEST(region.damping_line(0.7).reach == inf, method.name);
+      BOOST_TEST(region.damping_line(0.7).reach == inf, method.name());
       continue;
     }
     for (const double fraction : {0.0, 0.13, 0.37, 0.6, 0.85}) {
       const double x0 = fraction * region.constants().real_interval;
       const DampingLine best = region.damping_line(x0);
-      BOOST_TEST(best.reach > 0, method.name << " from " << x0);
-      BOOST_TEST(best.slope >= 0, method.name << " from " << x0);
+      BOOST_TEST(best.reach > 0, method.name() << " from " << x0);
+      BOOST_TEST(best.slope >= 0, method.name() << " from " << x0);
       const auto worst = [&](double slope_of_line, double reach) {
         std::vector<Point> points;
         for (int i = 0; i < 250; ++i) {
           const double y = reach * (i + 1) / 250;
           points.push_back({x0 + slope_of_line * y, y});
         }
-        const std::vector<double> rho = radii(method.name, points);
+        const std::vector<double> rho = radii(method.name(), points);
         return *std::max_element(rho.begin(), rho.end());
       };
-      BOOST_TEST(worst(best.slope, best.reach * (1 - 1e-9)) <= 1 + 1e-9, method.name << " from " << x0);
+      BOOST_TEST(worst(best.slope, best.reach * (1 - 1e-9)) <= 1 + 1e-9, method.name() << " from " << x0);
       for (const double aside : {-1e-3, -1e-4, -1e-5, 1e-5, 1e-4, 1e-3}) {
         const double reach = region.first_exit({{{x0, best.slope + aside}}, {{0, 1}}});
         if (best.slope + aside >= 0)
-          BOOST_TEST(reach <= best.reach * (1 + 1e-9),
-                     method.name << " from " << x0 << ", aside by " << aside);
+          BOOST_TEST(reach <= best.reach * (1 + 1e-9), method.name()
+                                                           << " from " << x0 << ", aside by " << aside);
       }
       for (int i = 0; i < 300; ++i) {
         const double slope_of_line = std::tan(1.5 * (i + 0.1) / 300);
         BOOST_TEST(worst(slope_of_line, 1.002 * best.reach) > 1 + 1e-9,
-                   method.name << " from " << x0 << ": slope " << slope_of_line << " reaches beyond "
-                               << best.reach << " of slope " << best.slope);
+                   method.name() << " from " << x0 << ": slope " << slope_of_line << " reaches beyond "
+                                 << best.reach << " of slope " << best.slope);
       }
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(radii_in_lanes_are_those_of_the_matrix) {
-  for (const MethodInfo& method : all_methods()) {
+  for (const Method& method : all_methods()) {
     for (const int count : {0, 1, 7, 8, 9, 21}) {
       std::vector<Point> points = random_points({-6, 8, -6, 9}, count, 4);
       if (count > 4) points[3] = {1, -2};  // a pole of implicit Euler must not spoil its neighbours
-      const std::vector<double> rho = radii(method.name, points);
+      const std::vector<double> rho = radii(method.name(), points);
       for (std::size_t i = 0; i < points.size(); ++i) {
         const auto [x, y] = points[i];
-        const Eigen::Matrix2d a = amplification_matrix(method.name, x, y);
+        const Eigen::Matrix2d a = method.amplification(x, y);
         if (!a.allFinite()) {
-          BOOST_TEST(rho[i] == inf, method.name << " at (" << x << ", " << y << ")");
+          BOOST_TEST(rho[i] == inf, method.name() << " at (" << x << ", " << y << ")");
           continue;
         }
         const auto [value, error] = oracles::eigenvalues(a, a.cwiseAbs());
         const double expected = std::max(std::abs(value[0]), std::abs(value[1]));
-        BOOST_TEST(std::abs(rho[i] - expected) <= error, method.name << " at (" << x << ", " << y << ")");
+        BOOST_TEST(std::abs(rho[i] - expected) <= error, method.name() << " at (" << x << ", " << y << ")");
       }
     }
   }
-  BOOST_TEST(!amplification_matrix("implicit-euler", 1, -2).allFinite());
+  BOOST_TEST(!Method("implicit-euler").amplification(1, -2).allFinite());
   BOOST_TEST(radius("implicit-euler", 1, -2) == inf);
   BOOST_TEST(radius("rk4", 1e200, 1) == inf);
   std::vector<double> two(2), three(3);
@@ -567,19 +568,19 @@ BOOST_AUTO_TEST_CASE(radii_in_lanes_are_those_of_the_matrix) {
 // the transient of a matrix that is not normal.
 BOOST_AUTO_TEST_CASE(simulated_cells_agree_with_the_radius_outside_the_band) {
   constexpr double threshold = 1e6;
-  for (const MethodInfo& method : all_methods()) {
-    const Window w = region_of(method.name).natural_window(0.15);
+  for (const Method& method : all_methods()) {
+    const Window w = region_of(method.name()).natural_window(0.15);
     const std::vector<Point> points = cells(w, 45);
     std::vector<double> x, y;
     for (const Point& p : points) {
       x.push_back(p.x);
       y.push_back(p.y);
     }
-    const std::vector<double> rho = radii(method.name, points);
+    const std::vector<double> rho = radii(method.name(), points);
     std::vector<CellFate> fate(points.size());
     std::size_t previous = points.size();
     for (const long steps : {128, 512}) {
-      simulate_cells(method.name, x, y, steps, threshold, fate);
+      simulate_cells(method.name(), x, y, steps, threshold, fate);
       const double band = 2 * std::log(threshold) / static_cast<double>(steps);
       std::size_t outside = 0, decayed = 0, diverged = 0;
       for (std::size_t i = 0; i < points.size(); ++i) {
@@ -588,12 +589,12 @@ BOOST_AUTO_TEST_CASE(simulated_cells_agree_with_the_radius_outside_the_band) {
         const CellFate expected = rho[i] < 1 ? CellFate::decayed : CellFate::diverged;
         decayed += expected == CellFate::decayed;
         diverged += expected == CellFate::diverged;
-        BOOST_TEST((fate[i] == expected),
-                   method.name << " at (" << x[i] << ", " << y[i] << "), rho = " << rho[i]);
+        BOOST_TEST((fate[i] == expected), method.name()
+                                              << " at (" << x[i] << ", " << y[i] << "), rho = " << rho[i]);
       }
-      BOOST_TEST(decayed > 100u, method.name);
-      BOOST_TEST(diverged > 100u, method.name);
-      BOOST_TEST(points.size() - outside < previous, method.name << ": the band does not shrink");
+      BOOST_TEST(decayed > 100u, method.name());
+      BOOST_TEST(diverged > 100u, method.name());
+      BOOST_TEST(points.size() - outside < previous, method.name() << ": the band does not shrink");
       previous = points.size() - outside;
     }
   }
@@ -620,7 +621,7 @@ BOOST_AUTO_TEST_CASE(errata_reported_and_computed) {
   // defective.
   for (const double y : {0.1, 1.7, 2.9, 3.99})
     BOOST_TEST(std::abs(radius("explicit-euler", y, y) - 1) < 1e-12, "explicit Euler on Y = X = " << y);
-  const Eigen::Matrix2d corner = amplification_matrix("explicit-euler", 4, 4);
+  const Eigen::Matrix2d corner = Method("explicit-euler").amplification(4, 4);
   Eigen::Matrix2d power = corner;
   for (int n = 1; n < 1000; ++n) power = power * corner;
   BOOST_TEST(std::abs(power.norm() / 1000 - 5) < 0.01);

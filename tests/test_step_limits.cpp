@@ -13,7 +13,6 @@
 
 #include "analysis/limits/step_limits.h"
 #include "analysis/regions/amplification.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(step_limits)
 
@@ -165,13 +164,13 @@ BOOST_AUTO_TEST_CASE(closed_form_of_symplectic_euler) {
 }
 
 BOOST_AUTO_TEST_CASE(a_rigid_mode_never_limits) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
-    BOOST_TEST(region.critical_step(0, 0) == inf, method.name);
-    BOOST_TEST(critical_step(region, {}) == inf, method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
+    BOOST_TEST(region.critical_step(0, 0) == inf, method.name());
+    BOOST_TEST(critical_step(region, {}) == inf, method.name());
     const RayleighModes with{.k_min = 0, .k_max = 40, .alpha = 0.1},
         without{.k_min = 1e-3, .k_max = 40, .alpha = 0.1};
-    BOOST_TEST(close(critical_step(region, with), critical_step(region, without), 1e-9), method.name);
+    BOOST_TEST(close(critical_step(region, with), critical_step(region, without), 1e-9), method.name());
   }
   // A rigid mode in air is not rigid: h d0 is bounded by the real interval.
   BOOST_TEST(close(critical_step(region_of("rk4"), {.d0 = 5}), region_of("rk4").constants().real_interval / 5,
@@ -179,8 +178,8 @@ BOOST_AUTO_TEST_CASE(a_rigid_mode_never_limits) {
 }
 
 BOOST_AUTO_TEST_CASE(below_the_limit_all_is_stable_and_just_above_it_is_not) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     int limited = 0;
     for (const RayleighModes& m : random_modes(25, 3)) {
       const double limit = critical_step(region, m);
@@ -188,16 +187,16 @@ BOOST_AUTO_TEST_CASE(below_the_limit_all_is_stable_and_just_above_it_is_not) {
       for (int i = 0; i < 40; ++i) {
         const double h = std::min(limit, scale) * (i == 39 ? 1 - 1e-9 : (i + 0.5) / 39.5);
         if (h == 0) continue;
-        const double rho = largest_radius(method.name, m, h, 80);
-        BOOST_TEST(rho <= 1 + 1e-9, method.name << ", " << text(m) << ": rho - 1 = " << rho - 1 << " at "
-                                                << h / limit << " of the limit");
+        const double rho = largest_radius(method.name(), m, h, 80);
+        BOOST_TEST(rho <= 1 + 1e-9, method.name() << ", " << text(m) << ": rho - 1 = " << rho - 1 << " at "
+                                                  << h / limit << " of the limit");
       }
       if (limit == inf) continue;
       ++limited;
-      const double above = largest_radius(method.name, m, limit * (1 + 1e-4), 3000);
-      BOOST_TEST(above > 1 + 1e-9, method.name << ", " << text(m) << ": stable above the limit " << limit);
+      const double above = largest_radius(method.name(), m, limit * (1 + 1e-4), 3000);
+      BOOST_TEST(above > 1 + 1e-9, method.name() << ", " << text(m) << ": stable above the limit " << limit);
     }
-    BOOST_TEST((limited > 20) != region.constants().covers_quadrant, method.name << ": " << limited);
+    BOOST_TEST((limited > 20) != region.constants().covers_quadrant, method.name() << ": " << limited);
   }
 }
 
@@ -237,49 +236,49 @@ BOOST_AUTO_TEST_CASE(a_curve_that_touches_the_boundary_goes_on) {
 }
 
 BOOST_AUTO_TEST_CASE(limits_scale_exactly_with_the_unit_of_time) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     for (const RayleighModes& m : random_modes(3, 4)) {
       const double limit = critical_step(region, m), recommended = recommended_step(region, m, 1.5);
       for (const double s : {1e9, 1e-9}) {  // times in units of s seconds
         const RayleighModes scaled{m.k_min * s * s, m.k_max * s * s, m.d0 * s, m.alpha / s};
         BOOST_TEST(close(critical_step(region, scaled) * s, limit, 1e-12),
-                   method.name << ", " << text(m) << ", s = " << s);
+                   method.name() << ", " << text(m) << ", s = " << s);
         BOOST_TEST(close(recommended_step(region, scaled, 1.5) * s, recommended, 1e-12),
-                   method.name << ", " << text(m) << ", s = " << s);
+                   method.name() << ", " << text(m) << ", s = " << s);
       }
     }
     for (const double d0 : {0.0, 0.4}) {
       const DampingDesign design = design_damping(region, 1, d0);
       for (const double s : {1e9, 1e-9}) {
         const DampingDesign scaled = design_damping(region, s * s, s * d0);
-        BOOST_TEST(close(scaled.h_max * s, design.h_max, 1e-12),
-                   method.name << ", d0 = " << d0 << ", s = " << s);
+        BOOST_TEST(close(scaled.h_max * s, design.h_max, 1e-12), method.name()
+                                                                     << ", d0 = " << d0 << ", s = " << s);
         // Where lines of several slopes do, the one chosen is known to less.
         if (std::isfinite(design.h_max))
           BOOST_TEST(std::abs(scaled.alpha * s - design.alpha) <= 1e-9 * design.h_max,
-                     method.name << ", d0 = " << d0 << ", s = " << s);
+                     method.name() << ", d0 = " << d0 << ", s = " << s);
       }
       const double h = 0.8;
       BOOST_TEST(
           close(designed_alpha(region, h * 1e-9, d0 * 1e9) * 1e9, designed_alpha(region, h, d0), 1e-12),
-          method.name << ", d0 = " << d0);
+          method.name() << ", d0 = " << d0);
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(without_d0_the_design_is_the_papers_rule) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     const RegionConstants& c = region.constants();
     const DampingDesign design = design_damping(region, 250, 0);
     if (!std::isfinite(c.y_max)) {
-      BOOST_TEST(design.h_max == inf, method.name);
+      BOOST_TEST(design.h_max == inf, method.name());
       continue;
     }
-    BOOST_TEST(close(design.h_max, std::sqrt(c.y_max / 250), 1e-12), method.name);
+    BOOST_TEST(close(design.h_max, std::sqrt(c.y_max / 250), 1e-12), method.name());
     BOOST_TEST(std::abs(design.alpha - design.h_max * c.x_at_y_max / c.y_max) < 1e-12 * design.h_max,
-               method.name);
+               method.name());
   }
 }
 
@@ -340,30 +339,30 @@ BOOST_AUTO_TEST_CASE(design_for_rk4_goes_through_four_regimes) {
 }
 
 BOOST_AUTO_TEST_CASE(the_designed_line_is_neutral_or_stable_and_no_line_of_a_longer_step_is) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     for (const double d0 : {0.0, 0.26, 0.61, 0.97}) {
       const DampingDesign design = design_damping(region, 1, d0);
       if (design.h_max == inf) {
-        BOOST_TEST(region.constants().covers_quadrant, method.name);
+        BOOST_TEST(region.constants().covers_quadrant, method.name());
         continue;
       }
-      BOOST_TEST(design.h_max > 0, method.name << ", d0 = " << d0);
-      BOOST_TEST(design.alpha >= 0, method.name << ", d0 = " << d0);
-      const double rho = radius_of_design(method.name, design, 1, d0);
-      BOOST_TEST(rho <= 1 + 1e-9, method.name << ", d0 = " << d0 << ": rho - 1 = " << rho - 1);
+      BOOST_TEST(design.h_max > 0, method.name() << ", d0 = " << d0);
+      BOOST_TEST(design.alpha >= 0, method.name() << ", d0 = " << d0);
+      const double rho = radius_of_design(method.name(), design, 1, d0);
+      BOOST_TEST(rho <= 1 + 1e-9, method.name() << ", d0 = " << d0 << ": rho - 1 = " << rho - 1);
       for (const double longer : {1.001, 1.03, 1.2})
         BOOST_TEST(
-            !some_alpha_works(method.name, longer * design.h_max, d0),
-            method.name << ", d0 = " << d0 << ": " << longer << " times the designed step is possible");
-      BOOST_TEST(some_alpha_works(method.name, 0.97 * design.h_max, d0), method.name << ", d0 = " << d0);
+            !some_alpha_works(method.name(), longer * design.h_max, d0),
+            method.name() << ", d0 = " << d0 << ": " << longer << " times the designed step is possible");
+      BOOST_TEST(some_alpha_works(method.name(), 0.97 * design.h_max, d0), method.name() << ", d0 = " << d0);
     }
   }
 }
 
 BOOST_AUTO_TEST_CASE(the_recommended_step_is_the_smallest_of_four) {
-  for (const MethodInfo& method : all_methods()) {
-    const StabilityRegion& region = region_of(method.name);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = region_of(method.name());
     bool each[4] = {};
     for (const RayleighModes& m : random_modes(6, 5)) {
       const double f = 1.5;
@@ -373,11 +372,11 @@ BOOST_AUTO_TEST_CASE(the_recommended_step_is_the_smallest_of_four) {
       const double limits[] = {critical_step(region, m), critical_step(region, same_damping),
                                critical_step(region, same_alpha), critical_step(region, faster)};
       const double smallest = *std::min_element(std::begin(limits), std::end(limits));
-      BOOST_TEST(close(recommended_step(region, m, f), smallest, 1e-9), method.name << ", " << text(m));
+      BOOST_TEST(close(recommended_step(region, m, f), smallest, 1e-9), method.name() << ", " << text(m));
       for (int i = 0; i < 4; ++i) each[i] = each[i] || (limits[i] == smallest && limits[i] < inf);
-      BOOST_TEST(close(recommended_step(region, m, 1), limits[0], 1e-12), method.name << ", " << text(m));
+      BOOST_TEST(close(recommended_step(region, m, 1), limits[0], 1e-12), method.name() << ", " << text(m));
     }
-    if (!region.constants().covers_quadrant) BOOST_TEST((each[1] && each[2] && each[3]), method.name);
+    if (!region.constants().covers_quadrant) BOOST_TEST((each[1] && each[2] && each[3]), method.name());
   }
   // Undamped, dividing by √F is right; with fixed damping explicit Euler loses F, not √F.
   const double f = 1.5;

@@ -18,7 +18,6 @@
 #include "solvers/scene/mesh_repair.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/tet_solid.h"
-#include "solvers/stepper.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(tet_solid)
@@ -450,7 +449,7 @@ BOOST_AUTO_TEST_CASE(an_inverted_solid_recovers) {
         return now.six_volumes(0);
       };
       BOOST_TEST(volume() == -1, boost::test_tools::tolerance(1e-12));
-      const auto stepper = make_stepper(method);
+      const auto stepper = Method(method).stepper();
       for (int i = 0; i < 20000; ++i) BOOST_REQUIRE((stepper->step(scene, 1e-3, state) == StepStatus::done));
       BOOST_TEST(volume() == 1, boost::test_tools::tolerance(1e-6));
       BOOST_TEST(scene.elastic_energy(state.x) < 1e-9);
@@ -462,7 +461,7 @@ BOOST_AUTO_TEST_CASE(a_collapsed_face_has_no_force_and_the_step_says_so) {
   State<Vector> state = scene.rest_state();
   state.x.segment<3>(6) = (state.x.segment<3>(3) + state.x.segment<3>(9)) / 2;
   const State<Vector> before = state;
-  BOOST_TEST((make_stepper("rk4")->step(scene, 1e-3, state) == StepStatus::diverged));
+  BOOST_TEST((Method("rk4").stepper()->step(scene, 1e-3, state) == StepStatus::diverged));
   BOOST_TEST((state.x == before.x));
 }
 

@@ -7,7 +7,6 @@
 
 #include "analysis/limits/transient_growth.h"
 #include "solvers/linear/matrix_system.h"
-#include "solvers/stepper.h"
 
 BOOST_AUTO_TEST_SUITE(transient_growth)
 
@@ -74,7 +73,7 @@ BOOST_AUTO_TEST_CASE(no_run_grows_more_and_some_do_as_much) {
         const double a = angle(random);
         State<Vector> state{Vector::Constant(1, std::cos(a) / std::sqrt(c.y)),
                             Vector::Constant(1, std::sin(a))};
-        const auto stepper = make_stepper(c.method);
+        const auto stepper = Method(c.method).stepper();
         for (int n = 0; n < 500; ++n) {
           stepper->step(system, 1, state);
           largest = std::max(largest, std::sqrt(c.y * state.x.squaredNorm() + state.v.squaredNorm()));

@@ -1,13 +1,12 @@
 #include "analysis/errors/power_law.h"
 
-#include <gsl/gsl_cdf.h>
-#include <gsl/gsl_fit.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "analysis/gsl/numerics.h"
 
 namespace springstab {
 namespace {
@@ -34,11 +33,8 @@ PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y) {
   const std::vector<double> u = logarithms(x), v = logarithms(y);
   if (const auto [least, most] = std::ranges::minmax(u); !(least < most))
     throw std::invalid_argument("a power law through points of one x, expected two or more");
-  double intercept, slope, var_intercept, covariance, var_slope, residual;
-  gsl_fit_linear(u.data(), 1, v.data(), 1, u.size(), &intercept, &slope, &var_intercept, &covariance,
-                 &var_slope, &residual);
-  const double quantile = gsl_cdf_tdist_Pinv(0.975, static_cast<double>(u.size() - 2));
-  return {std::exp(intercept), slope, quantile * std::sqrt(var_slope)};
+  const LineFit line = fit_line(u, v);
+  return {std::exp(line.intercept), line.slope, line.half_width};
 }
 
 }  // namespace springstab

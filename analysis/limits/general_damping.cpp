@@ -83,7 +83,7 @@ GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& 
                                const ArpackOptions& options)
     : k0_(k0), damping_(damping), safety_(safety), proofs_(proofs), s_(s), certified_(s, options) {}
 
-MethodLimits GeneralDamping::limits(std::string_view method) {
+MethodLimits GeneralDamping::limits(const Method& method) {
   const StabilityRegion& region = stability_region(method);
   for (const auto& [other, limits] : known_)
     if (region.same_conditions(*other)) return limits;
@@ -93,7 +93,7 @@ MethodLimits GeneralDamping::limits(std::string_view method) {
   return limits;
 }
 
-MethodLimits GeneralDamping::compute(std::string_view method) {
+MethodLimits GeneralDamping::compute(const Method& method) {
   MethodLimits limits = method_limits(method, k0_, damping_, safety_);
   if (!k0_.converged) return limits;
   if (!s_.symmetric) {
@@ -152,7 +152,7 @@ void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits)
   if (std::isfinite(least)) limits.recommended = least;
 }
 
-void GeneralDamping::add_certified(std::string_view method, MethodLimits& limits) {
+void GeneralDamping::add_certified(const Method& method, MethodLimits& limits) {
   if (proofs_) set_certified(certified_.certified(method), Proof::polygon, limits);
   double least = limits.h_certified.value_or(infinity);
   const std::vector<Stiffening> all = stiffenings();
@@ -183,7 +183,7 @@ std::optional<double> GeneralDamping::growth() {
 
 // The true critical step, from eigenvalues, where there are few enough unknowns; the recommended step then
 // is the smallest of such.
-void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits) {
+void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
   own_spectrum();
   double least = infinity;
   std::vector<double> steps;
@@ -205,20 +205,20 @@ void GeneralDamping::add_estimate(std::string_view method, MethodLimits& limits)
 // Of many unknowns only the eigenvalues near those scalar modes of W that bind first. The true limit is not
 // larger than theirs, nor smaller than what is proved: an estimate where the two are near each other, else
 // nothing.
-void GeneralDamping::add_estimate_near_boundary(std::string_view method, MethodLimits& limits) {
+void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimits& limits) {
   if (!limits.h_certified || s_.size() > shift_invert_limit) return;
-  struct Shift {
+  struct Near {
     double limit;  // [s]
     std::complex<double> mu;
   };
-  std::vector<Shift> shifts;
+  std::vector<Near> shifts;
   for (const ModePoint& p : certified_.outline()) {
     const std::complex<double> root = std::sqrt(std::complex<double>(p.d * p.d - 4 * p.k));
     for (const std::complex<double> mu : {(-p.d + root) / 2.0, (-p.d - root) / 2.0})
       if (mu.imag() >= 0 && std::abs(mu) > 0)
         shifts.push_back({critical_step(method, {mu}).value_or(infinity), mu});
   }
-  std::sort(shifts.begin(), shifts.end(), [](const Shift& p, const Shift& q) { return p.limit < q.limit; });
+  std::sort(shifts.begin(), shifts.end(), [](const Near& p, const Near& q) { return p.limit < q.limit; });
   constexpr std::size_t most_shifts = 3;
   constexpr Eigen::Index modes_a_shift = 8;
   double least = infinity;
@@ -236,13 +236,18 @@ void GeneralDamping::add_estimate_near_boundary(std::string_view method, MethodL
 }
 
 // Where the polygons prove much less than what is true, and there are few unknowns.
-void GeneralDamping::add_lyapunov(std::string_view method, MethodLimits& limits) {
+void GeneralDamping::add_lyapunov(const Method& method, MethodLimits& limits) {
   if (!proofs_ || !limits.h_max || s_.size() > LyapunovSteps::unknowns_limit) return;
   const double known = limits.h_certified.value_or(0);
   if (known > 0.999 * *limits.h_max) return;
   if (!lyapunov_) lyapunov_.emplace(s_);
-  if (const std::optional<double> h = lyapunov_->certified(method, known, *limits.h_max))
+  if (const std::optional<double> h = lyapunov_->certified(method, known, *limits.h_max)) {
     set_certified(h, Proof::lyapunov, limits);
+  } else if (!limits.h_certified && !method.has_magnitude()) {
+    limits.unproved =
+        "no convex part of the region was proved to hold the damping and stiffness, and a step that asks for "
+        "more than accelerations has no Lyapunov proof";
+  }
 }
 
 }  // namespace springstab

@@ -36,7 +36,7 @@ class GeneralDamping {
 
   /// Nothing is certified where K or D is indefinite or not symmetric, and that is the reason given: there
   /// the eigenvalues decide, of the motions that do not grow by themselves.
-  MethodLimits limits(std::string_view method);
+  MethodLimits limits(const Method& method);
 
   /// How fast the motion itself grows, the largest Re μ [1/s]: 0 where none does, nothing where not all
   /// eigenvalues were computed.
@@ -44,14 +44,14 @@ class GeneralDamping {
 
  private:
   const std::optional<std::vector<std::complex<double>>>& own_spectrum();
-  MethodLimits compute(std::string_view method);
+  MethodLimits compute(const Method& method);
   std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
   void set_certified(std::optional<double> h, Proof proof, MethodLimits& limits);
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
-  void add_certified(std::string_view method, MethodLimits& limits);
-  void add_estimate(std::string_view method, MethodLimits& limits);
-  void add_estimate_near_boundary(std::string_view method, MethodLimits& limits);
-  void add_lyapunov(std::string_view method, MethodLimits& limits);
+  void add_certified(const Method& method, MethodLimits& limits);
+  void add_estimate(const Method& method, MethodLimits& limits);
+  void add_estimate_near_boundary(const Method& method, MethodLimits& limits);
+  void add_lyapunov(const Method& method, MethodLimits& limits);
 
   const StiffestMode& k0_;
   DampingModel damping_;

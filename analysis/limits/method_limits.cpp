@@ -77,7 +77,7 @@ void keep_margin(double safety, MethodLimits& limits) {
   if (limits.h_certified) step = std::min(step, *limits.h_certified);
 }
 
-MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
+MethodLimits method_limits(const Method& method, const StiffestMode& k0, const DampingModel& damping,
                            double safety) {
   const StabilityRegion& region = stability_region(method);
   MethodLimits limits;

@@ -31,8 +31,8 @@ DampingModel classify_damping(const StructuralMatrices& s);
 enum class LimitStatus {
   limited,
   unlimited,  // every step is stable
-  none,       // no positive step is
-  unknown     // not computed for this kind of damping
+  none,       // no positive step is stable
+  unknown     // it was not computed for this kind of damping
 };
 
 /// What h_max comes from: exact (for the given k0), or eigenvalues that may not be all that matter.
@@ -56,7 +56,8 @@ struct MethodLimits {
   std::optional<double> h_certified;  // proved stable, at most h_max
   Proof proof = Proof::none;          // of h_certified
   std::string_view unproved{};        // why there is none
-  std::optional<double> recommended;  // with the safety factor, at most h_certified; absent also where unlimited
+  std::optional<double>
+      recommended;  // with the safety factor, at most h_certified; absent also where unlimited
   std::optional<DampingDesign> designed;
 };
 
@@ -67,7 +68,7 @@ void keep_margin(double safety, MethodLimits& limits);
 /// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);
 /// the others are unknown here (see general_damping.h), as is everything when k0 did not converge. `safety`
 /// >= 1 acts on the stiffness.
-MethodLimits method_limits(std::string_view method, const StiffestMode& k0, const DampingModel& damping,
+MethodLimits method_limits(const Method& method, const StiffestMode& k0, const DampingModel& damping,
                            double safety);
 
 }  // namespace springstab

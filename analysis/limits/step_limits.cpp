@@ -1,17 +1,13 @@
 #include "analysis/limits/step_limits.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_min.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "analysis/constants.h"
-#include "analysis/gsl_function.h"
+#include "analysis/gsl/numerics.h"
 
 namespace springstab {
 namespace {
@@ -22,22 +18,6 @@ void check(const RayleighModes& m) {
       throw std::invalid_argument("a mode's stiffness or damping is " + std::to_string(value) +
                                   ", expected finite and not negative");
   if (m.k_min > m.k_max) throw std::invalid_argument("k_min is larger than k_max");
-}
-
-// The smallest value of f near b, where f(a) > f(b) < f(c).
-template <class F>
-double minimum(const F& f, double a, double b, double c) {
-  gsl_function function = as_gsl_function(f);
-  const std::unique_ptr<gsl_min_fminimizer, void (*)(gsl_min_fminimizer*)> solver(
-      gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
-  if (gsl_min_fminimizer_set(solver.get(), &function, b, a, c) != GSL_SUCCESS) return f(b);
-  for (int i = 0; i < 100; ++i) {
-    if (gsl_min_fminimizer_iterate(solver.get()) != GSL_SUCCESS) break;
-    if (gsl_min_test_interval(gsl_min_fminimizer_x_lower(solver.get()),
-                              gsl_min_fminimizer_x_upper(solver.get()), 0, 1e-10) == GSL_SUCCESS)
-      break;
-  }
-  return gsl_min_fminimizer_f_minimum(solver.get());
 }
 
 }  // namespace
@@ -62,7 +42,7 @@ double critical_step(const StabilityRegion& region, const RayleighModes& modes) 
   }
   for (std::size_t i = 1; i + 1 < at.size(); ++i)
     if (value[i] < value[i - 1] && value[i] < value[i + 1] && value[i] < 1.1 * smallest)
-      smallest = std::min(smallest, minimum(log_limit, at[i - 1], at[i], at[i + 1]));
+      smallest = std::min(smallest, minimum_near(log_limit, at[i - 1], at[i], at[i + 1]));
   return smallest;
 }
 

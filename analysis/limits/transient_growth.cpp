@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "analysis/regions/amplification.h"
+#include <stdexcept>
 
 namespace springstab {
 namespace {
@@ -20,8 +19,11 @@ double spectral_norm(const Eigen::Matrix2d& a) {
 
 }  // namespace
 
-double transient_growth(std::string_view method, double x, double y, long steps) {
-  Eigen::Matrix2d a = amplification_matrix(method, x, y);
+double transient_growth(const Method& method, double x, double y, long steps) {
+  if (method.size() > 2)
+    throw std::invalid_argument("transient_growth: method '" + method.name() +
+                                "' carries vectors of which no energy is known, expected x and v alone");
+  Eigen::Matrix2d a = method.amplification(x, y);
   const double root = std::sqrt(y);
   a(0, 1) *= root;
   a(1, 0) /= root;
@@ -37,7 +39,7 @@ double transient_growth(std::string_view method, double x, double y, long steps)
   return largest;
 }
 
-double transient_growth(std::string_view method, const RayleighModes& modes, double h) {
+double transient_growth(const Method& method, const RayleighModes& modes, double h) {
   double largest = 1;
   for (int i = 1; i <= line_samples; ++i) {
     const double k = modes.k_min + (modes.k_max - modes.k_min) * i / line_samples;

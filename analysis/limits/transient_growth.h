@@ -2,18 +2,18 @@
 // bound towards double eigenvalues of modulus 1.
 #pragma once
 
-#include <string_view>
-
 #include "analysis/limits/step_limits.h"
+#include "analysis/method.h"
 
 namespace springstab {
 
 /// The largest ‖Aⁿ‖ over 0 <= n <= steps of an oscillator at (X, Y), Y > 0, in the norm of its energy,
 /// √(½ m v² + ½ m k x²): a lower bound of the supremum over all n. ∞ where a power overflows.
-double transient_growth(std::string_view method, double x, double y, long steps = 2000);
+/// Throws std::invalid_argument for a method that carries more than x and v.
+double transient_growth(const Method& method, double x, double y, long steps = 2000);
 
-/// Of the system of these modes at the step h [s], the same over a sample of them, k_max included. In the
+/// The same of the system of these modes at the step h [s], over a sample of them, k_max included. In the
 /// norm of the energy ‖Aⁿ‖ of the whole system is the largest of its modes', so this too is a lower bound.
-double transient_growth(std::string_view method, const RayleighModes& modes, double h);
+double transient_growth(const Method& method, const RayleighModes& modes, double h);
 
 }  // namespace springstab

@@ -62,7 +62,7 @@ std::optional<ExtremePoint> CertifiedSteps::farthest(const HalfPlane& edge, doub
 // The polygon that is best for the known points of W, then an edge that does not hold for all of W, whose
 // farthest point becomes known; until all edges hold.
 template <class Holds>
-std::optional<double> CertifiedSteps::search(std::string_view method, const Stiffening& stiffening,
+std::optional<double> CertifiedSteps::search(const Method& method, const Stiffening& stiffening,
                                              const Holds& holds) {
   if (outline().empty()) return std::nullopt;
   std::vector<ModePoint> modes;
@@ -78,7 +78,7 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();
-      for (const ModePoint& p : modes) least = std::min(least, first_exit(edge, p));
+      for (const ModePoint& p : modes) least = std::min(least, exit_step(edge, p));
       return least;
     };
     std::sort(fit.edges.begin(), fit.edges.end(),
@@ -88,24 +88,24 @@ std::optional<double> CertifiedSteps::search(std::string_view method, const Stif
     if (failed == fit.edges.end()) return h;
     const std::optional<ExtremePoint> p = farthest(*failed, h, stiffening);
     if (!p) return std::nullopt;
-    if (first_exit(*failed, stiffening(*p)) >= h) margin *= 4;  // what rounding and tolerance leave open
+    if (exit_step(*failed, stiffening(*p)) >= h) margin *= 4;  // what rounding and tolerance leave open
     outline_.push_back(*p);
     modes.push_back(stiffening(*p));
   }
   return std::nullopt;
 }
 
-std::optional<double> CertifiedSteps::certified(std::string_view method) {
+std::optional<double> CertifiedSteps::certified(const Method& method) {
   return search(method, {}, [&](const HalfPlane& edge, double h) {
     DefinitenessProof& by = edge.bound == 0 ? restricted().proof : proof();
     return by.holds(edge.bound, edge.x * h, edge.y * h * h);
   });
 }
 
-std::optional<double> CertifiedSteps::estimated(std::string_view method, const Stiffening& stiffening) {
+std::optional<double> CertifiedSteps::estimated(const Method& method, const Stiffening& stiffening) {
   return search(method, stiffening, [&](const HalfPlane& edge, double h) {
     const std::optional<ExtremePoint> p = farthest(edge, h, stiffening);
-    return p && first_exit(edge, stiffening(*p)) >= h;
+    return p && exit_step(edge, stiffening(*p)) >= h;
   });
 }
 

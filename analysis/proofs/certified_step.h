@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "analysis/proofs/definiteness.h"
@@ -24,25 +23,25 @@ class CertifiedSteps {
   explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
 
   const NumericalRange& range() const { return range_; }
-  /// Of the whole structure; made when first asked for.
+  /// The proofs of the whole structure; made when first asked for.
   DefinitenessProof& proof();
 
   /// A step proved stable; nothing where there is none in the polygons, as for explicit Euler when D is
   /// singular on motions that K resists, or where eigenvalues did not converge.
-  std::optional<double> certified(std::string_view method);
+  std::optional<double> certified(const Method& method);
 
   /// Points of W: those with the largest k and d, and where an edge of a polygon has bound. Empty where
   /// eigenvalues did not converge.
   const std::vector<ModePoint>& outline();
 
   /// What `certified` would be for the stiffened structure, by eigenvalues instead of proofs.
-  std::optional<double> estimated(std::string_view method, const Stiffening& stiffening);
+  std::optional<double> estimated(const Method& method, const Stiffening& stiffening);
 
  private:
   struct Restricted;  // the structure without its rigid motions
 
   template <class Holds>
-  std::optional<double> search(std::string_view method, const Stiffening& stiffening, const Holds& holds);
+  std::optional<double> search(const Method& method, const Stiffening& stiffening, const Holds& holds);
   std::optional<ExtremePoint> farthest(const HalfPlane& edge, double h, const Stiffening& stiffening);
   Restricted& restricted();
 

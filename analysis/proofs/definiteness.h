@@ -7,7 +7,7 @@
 
 namespace springstab {
 
-/// Of one structure, with one symbolic factorization for all its proofs.
+/// Proofs for one structure, with one symbolic factorization for all its proofs.
 class DefinitenessProof {
  public:
   /// Copies what it needs, scaled so that the mass has a unit diagonal. Where there are more than

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <mutex>
-#include <string>
 
 #include "analysis/constants.h"
-#include "solvers/stepper.h"
+#include "analysis/per_method.h"
 
 namespace springstab {
 namespace {
@@ -18,7 +15,7 @@ constexpr double same = 1e-6;           // points nearer than this are one
 
 }  // namespace
 
-double first_exit(const HalfPlane& half_plane, const ModePoint& p) {
+double exit_step(const HalfPlane& half_plane, const ModePoint& p) {
   const double linear = half_plane.x * std::max(p.d, 0.0), quadratic = half_plane.y * std::max(p.k, 0.0);
   const double c = half_plane.bound;
   if (c == 0) return linear > 0 ? 0 : quadratic > 0 ? -linear / quadratic : infinity;
@@ -141,7 +138,7 @@ PolygonFit InscribedPolygons::fit(const Chain& chain, const std::vector<ModePoin
     std::pair<double, std::size_t> least{infinity, 0};
     for (std::size_t i = 0; i + 1 < at.size(); ++i) {
       const HalfPlane side = edge(chain[at[i]], chain[at[i + 1]]);
-      for (const ModePoint& mode : modes) least = std::min(least, {first_exit(side, mode), i});
+      for (const ModePoint& mode : modes) least = std::min(least, {exit_step(side, mode), i});
     }
     return least;
   };
@@ -170,13 +167,9 @@ PolygonFit InscribedPolygons::fit(const std::vector<ModePoint>& modes) const {
   return best;
 }
 
-const InscribedPolygons& inscribed_polygons(std::string_view method) {
-  static std::mutex mutex;
-  static std::map<std::string, InscribedPolygons, std::less<>> all;
-  const std::lock_guard lock(mutex);
-  const std::string_view name = find_method(method).name;
-  if (const auto known = all.find(name); known != all.end()) return known->second;
-  return all.emplace(std::string(name), InscribedPolygons(stability_region(name))).first->second;
+const InscribedPolygons& inscribed_polygons(const Method& method) {
+  static PerMethod<InscribedPolygons> all;
+  return all.of(method, [&] { return InscribedPolygons(stability_region(method)); });
 }
 
 }  // namespace springstab

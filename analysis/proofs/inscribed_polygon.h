@@ -17,9 +17,9 @@ struct Stiffening {
   ModePoint operator()(const ModePoint& p) const { return {p.d + added_damping * p.k, factor * p.k}; }
 };
 
-/// The first h > 0 at which (h d, h² k), d and k >= 0, leaves the half-plane, whose bound is not negative: 0
-/// where it does so at once, ∞ where never.
-double first_exit(const HalfPlane& half_plane, const ModePoint& p);
+/// The step h > 0 [s] at which (h d, h² k), d and k >= 0, leaves the half-plane, whose bound is not negative:
+/// 0 where it does so at once, ∞ where it never does.
+double exit_step(const HalfPlane& half_plane, const ModePoint& p);
 
 /// A polygon, as its half-planes beside X >= 0 and Y >= 0, and the step up to which some modes fit into it.
 struct PolygonFit {
@@ -27,8 +27,8 @@ struct PolygonFit {
   std::vector<HalfPlane> edges;
 };
 
-/// Of one method. A region that is not convex has several largest convex parts: each is cut off along one
-/// tangent of a reflex arc of the boundary.
+/// The polygons of one method. A region that is not convex has several largest convex parts: each is cut off
+/// along one tangent of a reflex arc of the boundary.
 class InscribedPolygons {
  public:
   explicit InscribedPolygons(const StabilityRegion& region);
@@ -54,7 +54,7 @@ class InscribedPolygons {
   std::vector<Chain> convex_parts_;
 };
 
-/// Those of that method, computed once.
-const InscribedPolygons& inscribed_polygons(std::string_view method);
+/// Those of that method, computed once (see stability_region).
+const InscribedPolygons& inscribed_polygons(const Method& method);
 
 }  // namespace springstab

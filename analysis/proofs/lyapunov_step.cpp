@@ -5,11 +5,9 @@
 #include <cmath>
 
 #include "analysis/constants.h"
-#include "analysis/proofs/step_magnitude.h"
 #include "analysis/spectra/spectrum.h"
 #include "analysis/spectra/transition_operator.h"
 #include "solvers/linear/matrix_system.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -19,7 +17,7 @@ using Matrix = Eigen::MatrixXd;
 constexpr double rigid_eigenvalue = 1e-12;  // of K' + D', each of unit size
 
 // One step of length 1 in the unit of time h.
-Matrix transition_matrix(const Matrix& stiffness, const Matrix& damping, std::string_view method) {
+Matrix transition_matrix(const Matrix& stiffness, const Matrix& damping, const Method& method) {
   StructuralMatrices s;
   s.stiffness = stiffness.sparseView(0.0, 0.0);
   s.damping = damping.sparseView(0.0, 0.0);
@@ -74,8 +72,9 @@ LyapunovSteps::LyapunovSteps(const StructuralMatrices& s) {
   rounding_ = 16 * (3 * static_cast<double>(s.size()) + 16) * unit_roundoff;
 }
 
-bool LyapunovSteps::proves(std::string_view method, double h) const {
+bool LyapunovSteps::proves(const Method& method, double h) const {
   const Eigen::Index n = stiffness_.rows();
+  if (method.size() > 2 || !method.has_magnitude()) return false;
   if (n == 0 || !(stiffness_.diagonal().minCoeff() > 0)) return false;
   // In units of √k and of h the energy of each mode is ‖w‖², and A is not far from normal.
   Eigen::VectorXd scale = Eigen::VectorXd::Ones(2 * n);
@@ -84,7 +83,7 @@ bool LyapunovSteps::proves(std::string_view method, double h) const {
     return scale.asDiagonal() * a * scale.cwiseInverse().asDiagonal();
   };
   const Matrix a = scaled(transition_matrix(h * h * stiffness_, h * damping_, method));
-  const std::optional<Matrix> size = step_magnitude(method, h * h * stiffness_size_, h * damping_size_);
+  const std::optional<Matrix> size = method.magnitude(h * h * stiffness_size_, h * damping_size_);
   if (!size) return false;
   const Matrix b = rounding_ * scaled(*size);  // bounds the rounding of a, entry by entry
   const Matrix p = lyapunov_matrix(a);
@@ -98,7 +97,7 @@ bool LyapunovSteps::proves(std::string_view method, double h) const {
   return is_definite(symmetric_part(p - a.transpose() * p * a), error);
 }
 
-std::optional<double> LyapunovSteps::certified(std::string_view method, double least, double h_max) const {
+std::optional<double> LyapunovSteps::certified(const Method& method, double least, double h_max) const {
   for (double gap = 1e-6; gap < 1; gap = std::min(4 * gap, (1 + gap) / 2)) {
     const double h = h_max * (1 - gap);
     if (h <= least || gap > 0.99) break;

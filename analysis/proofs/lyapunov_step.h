@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string_view>
 
+#include "analysis/method.h"
 #include "solvers/linear/structural_matrices.h"
 
 namespace springstab {
@@ -21,13 +21,13 @@ class LyapunovSteps {
   explicit LyapunovSteps(const StructuralMatrices& s);
 
   /// Whether a step of h is proved to be stable, in spite of the rounding of A, of P - AᵀPA and of the
-  /// Cholesky factorizations. It takes K positive definite but for rigid motions, and a method with a
-  /// step_magnitude.
-  bool proves(std::string_view method, double h) const;
+  /// Cholesky factorizations. It takes K positive definite but for rigid motions, and a method that
+  /// carries only x and v and has a magnitude.
+  bool proves(const Method& method, double h) const;
 
   /// The first step proved of those that fall from `h_max`, the true limit, by growing gaps to `least`;
   /// nothing where none is. Unlike a polygon it says nothing of smaller steps.
-  std::optional<double> certified(std::string_view method, double least, double h_max) const;
+  std::optional<double> certified(const Method& method, double least, double h_max) const;
 
  private:
   // K' and D' in the basis of K's eigenvectors, and bounds on what their entries sum up

@@ -1,23 +1,16 @@
-// What a method's step adds up: a bound on the rounding of its transition matrix.
+// What a method's step adds up: a bound on the rounding of its transition matrix. See Method::magnitude.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
 #include <optional>
-#include <string_view>
 
+#include "solvers/methods/method_info.h"
 #include "solvers/state.h"
 
 namespace springstab {
 
-/// The transition matrix, 2n x 2n over (x, v), of one step of length 1 of x'' = -Kx - Dv with every term
-/// taken as positive: |K|, |D| entry by entry, differences as sums, factors by their size. An entry computed
-/// in floating point is off by at most a few roundings of it. Nothing for methods that need more of a system
-/// than its accelerations.
-std::optional<Eigen::MatrixXd> step_magnitude(std::string_view method, const Eigen::MatrixXd& stiffness,
-                                              const Eigen::MatrixXd& damping);
-
-/// Sizes of the unknowns from each of the 2n unit starts, in columns.
+/// Sizes of the unknowns from each of the mn unit starts, in columns.
 struct Magnitude {
   Eigen::MatrixXd entries;
 
@@ -37,17 +30,34 @@ struct MagnitudeSystem {
   }
 };
 
-/// The same of any method; nothing where its step asks for more than MagnitudeSystem has.
-template <class Method>
-std::optional<Eigen::MatrixXd> magnitude(MagnitudeSystem& system) {
-  const Eigen::Index n = system.stiffness.rows();
-  State<Magnitude> state{{Eigen::MatrixXd::Identity(n, 2 * n)}, {Eigen::MatrixXd::Zero(n, 2 * n)}};
-  state.v.entries.rightCols(n).setIdentity();
-  if constexpr (requires(Method method) { method.step(system, 1.0, state); }) {
-    Method method;
-    if (method.step(system, 1.0, state) != StepStatus::done) return std::nullopt;
-    Eigen::MatrixXd result(2 * n, 2 * n);
-    result << state.x.entries, state.v.entries;
+/// Whether the method's step asks for nothing that MagnitudeSystem has not.
+template <class Description>
+inline constexpr bool has_step_magnitude = requires(StepsOf<Description, Magnitude> steps,
+                                                    MagnitudeSystem& system, State<Magnitude>& state) {
+  steps.step(system, 1.0, state);
+};
+
+template <class Description>
+std::optional<Eigen::MatrixXd> step_magnitude(const Description& description,
+                                              const Eigen::MatrixXd& stiffness,
+                                              const Eigen::MatrixXd& damping) {
+  if constexpr (has_step_magnitude<Description>) {
+    MagnitudeSystem system{stiffness.cwiseAbs(), damping.cwiseAbs()};
+    const Eigen::Index n = stiffness.rows(), m = 2 + description.info().memory;
+    const auto unit = [&](Eigen::Index i) {
+      Magnitude u{Eigen::MatrixXd::Zero(n, m * n)};
+      u.entries.middleCols(i * n, n).setIdentity();
+      return u;
+    };
+    State<Magnitude> state{unit(0), unit(1)};
+    for (Eigen::Index i = 2; i < m; ++i) state.memory.push_back(unit(i));
+    auto steps = make_steps<Magnitude>(description);
+    if (steps.step(system, 1.0, state) != StepStatus::done) return std::nullopt;
+    Eigen::MatrixXd result(m * n, m * n);
+    result.topRows(n) = state.x.entries;
+    result.middleRows(n, n) = state.v.entries;
+    for (Eigen::Index i = 2; i < m; ++i)
+      result.middleRows(i * n, n) = state.memory[static_cast<std::size_t>(i - 2)].entries;
     return result;
   } else {
     return std::nullopt;

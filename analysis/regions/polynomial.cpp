@@ -1,12 +1,10 @@
 #include "analysis/regions/polynomial.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_poly.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <stdexcept>
+
+#include "analysis/gsl/numerics.h"
 
 namespace springstab {
 
@@ -67,17 +65,9 @@ std::vector<double> Polynomial::real_roots() const {
   a.erase(a.begin(), a.begin() + zeros);
   if (zeros > 0) roots.push_back(0.0);
   if (a.size() > 1) {
-    const std::size_t n = a.size();
-    static const auto handler_off = gsl_set_error_handler_off();  // statuses are checked instead
-    (void)handler_off;
-    std::vector<double> z(2 * (n - 1));
-    const std::unique_ptr<gsl_poly_complex_workspace, void (*)(gsl_poly_complex_workspace*)> workspace(
-        gsl_poly_complex_workspace_alloc(n), gsl_poly_complex_workspace_free);
-    if (gsl_poly_complex_solve(a.data(), n, workspace.get(), z.data()) != GSL_SUCCESS)
-      throw std::runtime_error("GSL found no roots of a polynomial of degree " + std::to_string(n - 1));
     const Polynomial p{a}, slope = p.derivative();
-    for (std::size_t i = 0; i + 1 < n; ++i)
-      if (std::abs(z[2 * i + 1]) <= 1e-6 * std::abs(z[2 * i])) roots.push_back(polished(p, slope, z[2 * i]));
+    for (const std::complex<double>& z : polynomial_roots(a))
+      if (std::abs(z.imag()) <= 1e-6 * std::abs(z.real())) roots.push_back(polished(p, slope, z.real()));
   }
   std::sort(roots.begin(), roots.end());
   return roots;

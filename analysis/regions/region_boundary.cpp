@@ -1,15 +1,11 @@
 // The region inside a window, from its smooth pieces: area, boundary arcs, filled pieces.
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_integration.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include "analysis/gsl_function.h"
+#include "analysis/gsl/numerics.h"
 #include "analysis/regions/region_pieces.h"
 #include "analysis/regions/stability_region.h"
 
@@ -63,9 +59,6 @@ std::vector<StabilityRegion::Piece> StabilityRegion::pieces_of(const Window& win
 }
 
 double StabilityRegion::area(const Window& window) const {
-  constexpr std::size_t limit = 200;
-  const std::unique_ptr<gsl_integration_workspace, void (*)(gsl_integration_workspace*)> workspace(
-      gsl_integration_workspace_alloc(limit), gsl_integration_workspace_free);
   double area = 0;
   for (const Piece& piece : pieces_of(window)) {
     const auto strip = [&](double angle) {
@@ -74,13 +67,10 @@ double StabilityRegion::area(const Window& window) const {
       for (const StableInterval& interval : c.intervals) height += interval.upper - interval.lower;
       return height * 0.5 * (piece.right - piece.left) * std::sin(angle);
     };
-    gsl_function function = as_gsl_function(strip);
-    double part, error;
-    const int status = gsl_integration_qag(&function, 0, std::numbers::pi, 1e-13, 1e-12, limit,
-                                           GSL_INTEG_GAUSS31, workspace.get(), &part, &error);
-    if (status != GSL_SUCCESS && error > 1e-10)
-      throw std::runtime_error(std::string("the area of the region: ") + gsl_strerror(status));
-    area += part;
+    const Integral part = integral(strip, 0, std::numbers::pi);
+    if (!part.failure.empty() && part.error > 1e-10)
+      throw std::runtime_error("the area of the region: " + part.failure);
+    area += part.value;
   }
   return area;
 }

@@ -1,5 +1,5 @@
 // How StabilityRegion cuts the plane: columns of one X, and pieces between which the columns change smoothly.
-// Shared by stability_region.cpp and region_boundary.cpp; not for others.
+// Shared by stability_region.cpp, region_boundary.cpp and region_constants.cpp; not for others.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +26,9 @@ struct StabilityRegion::Piece {
   double left, right;
   Column inner;  // a representative
 };
+
+/// X over the whole line, ascending, dense near 0, with 0 itself.
+std::vector<double> whole_line();
 
 /// A point strictly between a and b, either of which may be infinite.
 double between(double a, double b);

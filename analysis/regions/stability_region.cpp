@@ -1,20 +1,13 @@
 #include "analysis/regions/stability_region.h"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_roots.h>
-
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <memory>
-#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
 #include "analysis/constants.h"
-#include "analysis/gsl_function.h"
+#include "analysis/per_method.h"
 #include "analysis/regions/region_pieces.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -80,22 +73,23 @@ std::vector<Candidate> candidates(const std::vector<Condition>& jury, double t_m
   return found;
 }
 
-template <class F>
-double root_between(F f, double a, double b) {
-  gsl_function function = as_gsl_function(f);
-  const std::unique_ptr<gsl_root_fsolver, void (*)(gsl_root_fsolver*)> solver(
-      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  gsl_root_fsolver_set(solver.get(), &function, a, b);
-  for (int i = 0; i < 100; ++i) {
-    gsl_root_fsolver_iterate(solver.get());
-    if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()), gsl_root_fsolver_x_upper(solver.get()),
-                               0, 4e-16) == GSL_SUCCESS)
-      break;
-  }
-  return gsl_root_fsolver_root(solver.get());
+std::vector<RationalFunction> two_by_two(const Method& method) {
+  if (method.size() > 2)
+    throw std::invalid_argument("method '" + method.name() + "' carries " +
+                                std::to_string(method.info().memory) +
+                                " vectors beyond x and v, expected none: Jury's three inequalities decide "
+                                "2x2 matrices");
+  return method.symbolic_step();
 }
 
-// X over the whole line, dense near 0, with 0 itself: u -> 4u / (1 - u²).
+std::array<RationalFunction, 3> jury_conditions(const std::vector<RationalFunction>& a) {
+  const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
+  return {one - determinant, one - trace + determinant, one + trace + determinant};
+}
+
+}  // namespace
+
+// u -> 4u / (1 - u²).
 std::vector<double> whole_line() {
   constexpr int half = 400;
   std::vector<double> grid;
@@ -105,13 +99,6 @@ std::vector<double> whole_line() {
   }
   return grid;
 }
-
-std::array<RationalFunction, 3> jury_conditions(const SymbolicAmplification& a) {
-  const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
-  return {one - determinant, one - trace + determinant, one + trace + determinant};
-}
-
-}  // namespace
 
 double between(double a, double b) {
   if (std::isfinite(a) && std::isfinite(b)) return a + (b - a) / 2;
@@ -124,8 +111,8 @@ double cosine_point(double left, double right, double angle) {
   return left + (right - left) * 0.5 * (1 - std::cos(angle));
 }
 
-StabilityRegion::StabilityRegion(std::string_view method)
-    : amplification_(symbolic_amplification(method)), jury_(jury_conditions(amplification_)) {
+StabilityRegion::StabilityRegion(const Method& method)
+    : amplification_(two_by_two(method)), jury_(jury_conditions(amplification_)) {
   all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
   constants_ = find_constants();
 }
@@ -254,62 +241,6 @@ std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::ve
   return pieces;
 }
 
-bool StabilityRegion::powers_bounded_at(double x, double y) const {
-  Eigen::Matrix2d a;
-  a << amplification_[0](x, y), amplification_[1](x, y), amplification_[2](x, y), amplification_[3](x, y);
-  const double mean = a.trace() / 2, half = (a(0, 0) - a(1, 1)) / 2;
-  const double separation = std::sqrt(std::abs(half * half + a(0, 1) * a(1, 0)));  // |λ₁ - λ₂| / 2
-  const bool double_root = separation < 1e-5;  // the apex is known to about 1e-12
-  return !double_root || (a - mean * Eigen::Matrix2d::Identity()).norm() < 1e-5;
-}
-
-RegionConstants StabilityRegion::find_constants() const {
-  RegionConstants found{-infinity, std::numeric_limits<double>::quiet_NaN(), false, 0, 0, false};
-  found.real_interval = critical_step(0, 1);
-  found.imaginary_interval = critical_step(1, 0);
-  for (const Piece& piece : all_pieces_) {
-    const StableInterval& top = piece.inner.intervals.back();
-    if (top.upper == infinity) {
-      found.y_max = infinity;
-      found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
-      break;
-    }
-    const auto [x, y] = highest_point(piece);
-    if (y > found.y_max) found.y_max = y, found.x_at_y_max = x;
-  }
-  if (std::isfinite(found.y_max)) found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
-  found.covers_quadrant = std::any_of(all_pieces_.begin(), all_pieces_.end(), [](const Piece& piece) {
-    const StableInterval& top = piece.inner.intervals.back();
-    return piece.left <= 0 && piece.right >= whole_line().back() && top.lower <= 0 && top.upper == infinity;
-  });
-  return found;
-}
-
-// The top of a piece is a smooth graph Y(X) on a condition J = 0; inside, its maximum is where J_X = 0.
-std::pair<double, double> StabilityRegion::highest_point(const Piece& piece) const {
-  constexpr int samples = 64;
-  const auto top = [&](double x) {
-    const Column c = column(x, -infinity, infinity);
-    return c.intervals.empty() ? -infinity : c.intervals.back().upper;
-  };
-  const double inset = 1e-15 * std::max(1.0, std::abs(piece.left) + std::abs(piece.right));
-  std::vector<double> xs;
-  for (int i = 0; i <= samples; ++i)
-    xs.push_back(std::clamp(cosine_point(piece.left, piece.right, std::numbers::pi * i / samples),
-                            piece.left + inset, piece.right - inset));
-  std::vector<double> ys;
-  for (double x : xs) ys.push_back(top(x));
-  const auto best = static_cast<std::size_t>(std::max_element(ys.begin(), ys.end()) - ys.begin());
-  if (best == 0 || best == samples) return {best == 0 ? piece.left : piece.right, ys[best]};
-
-  const auto bound = static_cast<std::size_t>(piece.inner.intervals.back().upper_bound);
-  const BivariatePolynomial slope = jury_[bound].numerator().derivative_x();
-  const auto steepness = [&](double x) { return slope(x, top(x)); };
-  if (steepness(xs[best - 1]) * steepness(xs[best + 1]) > 0) return {xs[best], ys[best]};
-  const double x = root_between(steepness, xs[best - 1], xs[best + 1]);
-  return {x, top(x)};
-}
-
 bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, double y1) const {
   const Curve segment{{{x0, x1 - x0}}, {{y0, y1 - y0}}};
   for (const Condition& condition : along(jury_, segment)) {
@@ -325,42 +256,9 @@ bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, 
   return true;
 }
 
-DampingLine StabilityRegion::damping_line(double x0) const {
-  const double apex_slope = (constants_.x_at_y_max - x0) / constants_.y_max;
-  if (apex_slope >= 0 && closed_segment_is_stable(x0, 0, constants_.x_at_y_max, constants_.y_max))
-    return {apex_slope, constants_.y_max};
-
-  const auto reach = [&](double angle) {
-    const double c = angle == 0 ? 0 : std::sin(angle), s = std::cos(angle);  // angle 0 points straight up
-    return s * first_exit({{{x0, c}}, {{0, s}}});
-  };
-  constexpr int samples = 256;
-  const double width = std::numbers::pi / 2 / samples;
-  DampingLine best{0, reach(0)};
-  double best_angle = 0;
-  for (int i = 1; i < samples; ++i)
-    if (const double y = reach(i * width); y > best.reach)
-      best = {std::tan(i * width), y}, best_angle = i * width;
-  if (best_angle == 0 || best.reach == infinity) return best;
-
-  double lower = best_angle - width, upper = best_angle + width;  // golden section: the reach may jump
-  for (int i = 0; i < 80; ++i) {
-    const double a = upper - (upper - lower) / std::numbers::phi,
-                 b = lower + (upper - lower) / std::numbers::phi;
-    const double at_a = reach(a), at_b = reach(b);
-    (at_a < at_b ? lower : upper) = at_a < at_b ? a : b;
-    if (std::max(at_a, at_b) > best.reach) best = {std::tan(at_a > at_b ? a : b), std::max(at_a, at_b)};
-  }
-  return best;
-}
-
-const StabilityRegion& stability_region(std::string_view method) {
-  static std::mutex mutex;
-  static std::map<std::string, StabilityRegion, std::less<>> regions;
-  const std::lock_guard lock(mutex);
-  const std::string_view name = find_method(method).name;
-  if (const auto known = regions.find(name); known != regions.end()) return known->second;
-  return regions.emplace(std::string(name), StabilityRegion(name)).first->second;
+const StabilityRegion& stability_region(const Method& method) {
+  static PerMethod<StabilityRegion> regions;
+  return regions.of(method, [&] { return StabilityRegion(method); });
 }
 
 }  // namespace springstab

@@ -13,11 +13,10 @@
 #include <array>
 #include <limits>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "analysis/regions/amplification.h"
+#include "analysis/method.h"
 #include "analysis/regions/polynomial.h"
 
 namespace springstab {
@@ -75,7 +74,8 @@ struct DampingLine {
 
 class StabilityRegion {
  public:
-  explicit StabilityRegion(std::string_view method);
+  /// Throws std::invalid_argument for a method that carries more than x and v.
+  explicit StabilityRegion(const Method& method);
   StabilityRegion(StabilityRegion&&) noexcept;
   ~StabilityRegion();
 
@@ -134,13 +134,14 @@ class StabilityRegion {
   bool powers_bounded_at(double x, double y) const;
   std::pair<double, double> highest_point(const Piece& piece) const;
 
-  SymbolicAmplification amplification_;
-  std::array<RationalFunction, 3> jury_;  // indexed by Bound
-  std::vector<Piece> all_pieces_;         // of the whole plane
+  std::vector<RationalFunction> amplification_;  // 2x2, row by row
+  std::array<RationalFunction, 3> jury_;         // indexed by Bound
+  std::vector<Piece> all_pieces_;                // of the whole plane
   RegionConstants constants_;
 };
 
-/// The region of that method, computed once.
-const StabilityRegion& stability_region(std::string_view method);
+/// The region of that method, computed once and kept as long as the program runs: for copies of the same
+/// Method. (For one of many parameters tried, construct a StabilityRegion.)
+const StabilityRegion& stability_region(const Method& method);
 
 }  // namespace springstab

@@ -16,9 +16,10 @@ constexpr double rigid_rate = 1e-6, undamped = 1e-9;  // of the generator's rate
 constexpr double accurate = 1e-6;
 
 // A function of the generator commutes with it; symplectic Euler's matrix does not.
-bool has_stability_function(std::string_view method) {
+bool has_stability_function(const Method& method) {
+  if (method.size() > 2) return false;
   const double x = 0.3, y = 0.7;
-  const Eigen::Matrix2d a = amplification_matrix(method, x, y), c{{0, 1}, {-y, -x}};
+  const Eigen::Matrix2d a = method.amplification(x, y), c{{0, 1}, {-y, -x}};
   return (a * c - c * a).norm() <= 1e-12 * a.norm();
 }
 
@@ -124,7 +125,7 @@ std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::c
   return modes;
 }
 
-std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes,
+std::optional<double> critical_step(const Method& method, const std::vector<std::complex<double>>& modes,
                                     double largest) {
   if (!has_stability_function(method)) return std::nullopt;
   const StabilityRegion& region = stability_region(method);

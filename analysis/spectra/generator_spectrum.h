@@ -3,7 +3,6 @@
 
 #include <complex>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "analysis/spectra/arpack.h"
@@ -39,11 +38,11 @@ std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::c
                                              Eigen::Index count, const ArpackOptions& options = {});
 
 /// The largest H such that every 0 < h < H keeps all these modes stable or neutral, but those that grow by
-/// themselves, for a method with a
-/// stability function, whose eigenvalues on them are R(hμ). An estimate: the eigenvalues carry rounding.
-/// Nothing for other methods, and where it hinges on a real part of rounding's size: 1e-9 of the largest |μ|,
-/// of these modes or, where they are only some, `largest`.
-std::optional<double> critical_step(std::string_view method, const std::vector<std::complex<double>>& modes,
+/// themselves. It is for methods with a stability function, whose eigenvalues on the modes are R(hμ), and an
+/// estimate, since the eigenvalues carry rounding. Nothing for other methods, and where it hinges on a real
+/// part of rounding's size: 1e-9 of the largest |μ| of these modes or, where they are only some, of
+/// `largest`.
+std::optional<double> critical_step(const Method& method, const std::vector<std::complex<double>>& modes,
                                     double largest = 0);
 
 }  // namespace springstab

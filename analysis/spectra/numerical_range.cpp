@@ -10,7 +10,7 @@
 namespace springstab {
 namespace {
 
-// Of a multiple.
+// The least eigenvalue of `factor` times a.
 double lowest(double factor, const LinearOperator& a) {
   return factor == 0 ? 0 : factor > 0 ? factor * a.lowest : factor * a.highest;
 }

@@ -89,8 +89,8 @@ StiffestMode dominant_mode(const LinearOperator& s, ArpackOptions options) {
   return best;
 }
 
-// Of a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the least
-// real part.
+// For a matrix that is not symmetric: the eigenvalue of largest modulus and, where all are computed, the
+// least real part.
 StiffestMode nonsymmetric_spectrum(const LinearOperator& s, const ArpackOptions& options) {
   StiffestMode mode;
   if (s.size > nonsymmetric_limit) {
@@ -120,7 +120,7 @@ StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& optio
   return mode;
 }
 
-// Of M^-½ A M^-½.
+// The largest entry of M^-½ A M^-½, without its sign.
 double largest_scaled_entry(const SparseMatrix& a, const Eigen::VectorXd& inverse_root) {
   double largest = 0;
   for (Eigen::Index j = 0; j < a.outerSize(); ++j)

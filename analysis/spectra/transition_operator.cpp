@@ -1,22 +1,28 @@
 #include "analysis/spectra/transition_operator.h"
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
-#include "solvers/stepper.h"
-
 namespace springstab {
 
-LinearOperator transition_operator(LinearSystem& system, std::string_view method, double h) {
-  const std::shared_ptr<Stepper> stepper = make_stepper(method);
-  const Eigen::Index n = system.size();
-  return {2 * n, [&system, stepper, h, n, state = State<Vector>()](const Vector& in, Vector& out) mutable {
+LinearOperator transition_operator(LinearSystem& system, const Method& method, double h) {
+  const std::shared_ptr<Stepper> stepper = method.stepper();
+  const Eigen::Index n = system.size(), m = method.size();
+  State<Vector> state;
+  state.memory.resize(static_cast<std::size_t>(m - 2));
+  return {m * n, [&system, stepper, h, n, state](const Vector& in, Vector& out) mutable {
             state.x = in.head(n);
-            state.v = in.tail(n);
+            state.v = in.segment(n, n);
+            for (std::size_t i = 0; i < state.memory.size(); ++i)
+              state.memory[i] = in.segment((2 + static_cast<Eigen::Index>(i)) * n, n);
             if (stepper->step(system, h, state) != StepStatus::done)
               throw std::runtime_error("the step failed with h = " + std::to_string(h));
-            out.resize(2 * n);
-            out << state.x, state.v;
+            out.resize(in.size());
+            out.head(n) = state.x;
+            out.segment(n, n) = state.v;
+            for (std::size_t i = 0; i < state.memory.size(); ++i)
+              out.segment((2 + static_cast<Eigen::Index>(i)) * n, n) = state.memory[i];
           }};
 }
 

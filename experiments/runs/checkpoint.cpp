@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
+#include <type_traits>
+#include <vector>
 
 #include "experiments/runs/fnv1a.h"
 #include "experiments/runs/identity.h"
@@ -38,6 +40,15 @@ RunSoFar run_of(const Json& json) {
   return run;
 }
 
+// In the order in which they are stored.
+template <class AnyState,
+          class AnyVector = std::conditional_t<std::is_const_v<AnyState>, const Vector, Vector>>
+std::vector<AnyVector*> vectors_of(AnyState& state) {
+  std::vector<AnyVector*> all{&state.x, &state.v};
+  for (AnyVector& u : state.memory) all.push_back(&u);
+  return all;
+}
+
 }  // namespace
 
 CheckpointFile::CheckpointFile(const std::string& folder, const Json& identity, bool resume, bool quiet)
@@ -66,8 +77,9 @@ std::optional<KeptRun> CheckpointFile::read() {
   expect_same_run(about.at("identity"), identity_, path_, 0);
   KeptRun kept{run_of(about.at("run")), {}, about.at("others")};
   const Eigen::Index size = about.at("unknowns");
+  kept.state.memory.resize(about.value("memory", std::size_t{0}));
   const char* next = content.data() + end + 1;
-  for (Vector* u : {&kept.state.x, &kept.state.v}) {
+  for (Vector* u : vectors_of(kept.state)) {
     u->resize(size);
     const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(size);
     std::memcpy(u->data(), next, bytes);
@@ -80,15 +92,17 @@ std::optional<KeptRun> CheckpointFile::read() {
 void CheckpointFile::save(const KeptRun& kept) {
   if (path_.empty()) return;
   const Clock::time_point before = Clock::now();
-  if (!kept.state.x.allFinite() || !kept.state.v.allFinite() || !all_finite(kept.others))
+  const std::vector<const Vector*> vectors = vectors_of(kept.state);
+  if (!std::all_of(vectors.begin(), vectors.end(), [](const Vector* u) { return u->allFinite(); }) ||
+      !all_finite(kept.others))
     throw std::logic_error("a state to be saved is not finite");
-  std::string content = Json{{"identity", identity_},
-                             {"unknowns", kept.state.x.size()},
-                             {"run", json_of(kept.run)},
-                             {"others", kept.others}}
-                            .dump() +
-                        '\n';
-  for (const Vector* u : {&kept.state.x, &kept.state.v})
+  Json about{{"identity", identity_},
+             {"unknowns", kept.state.x.size()},
+             {"run", json_of(kept.run)},
+             {"others", kept.others}};
+  if (!kept.state.memory.empty()) about["memory"] = kept.state.memory.size();
+  std::string content = about.dump() + '\n';
+  for (const Vector* u : vectors)
     content.append(reinterpret_cast<const char*>(u->data()),
                    sizeof(double) * static_cast<std::size_t>(u->size()));
   OutputFile file(path_);

@@ -17,8 +17,8 @@ struct KeptRun {
   Json others;  // whatever else its owner needs
 };
 
-/// DIR/simulate.checkpoint: a line of JSON, the state as it lies in memory, and a hash of both. It is
-/// replaced whole.
+/// DIR/simulate.checkpoint: a line of JSON, the state as it lies in memory with all that the method carries,
+/// and a hash of both. It is replaced whole.
 class CheckpointFile {
  public:
   /// Nowhere if the folder is empty. Without `resume` a file of an earlier run is removed. Throws InputError

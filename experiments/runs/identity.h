@@ -10,7 +10,8 @@
 
 namespace springstab {
 
-/// Of a command with options and inputs (contents_of). Also says which program and machine it is.
+/// The identity of a command with options and inputs (contents_of). Also says which program and machine it
+/// is.
 Json identity_of(const std::string& command, const Json& options, const Json& inputs);
 
 /// U+FFFD in place of what is not UTF-8, as a file's name may be; JSON takes nothing else.
@@ -22,7 +23,7 @@ std::string bytes_of(const std::string& path);
 /// A hash of each file, with that of the mesh which a scene file names, and the input options as given.
 /// To `resume`, throws InputError for a pipe, which cannot be read again.
 Json contents_of(const InputOptions& input, bool resume);
-/// Of one scene file, mesh or matrix.
+/// The same of one scene file, mesh or matrix.
 Json contents_of(const std::string& file, bool resume);
 
 /// What is wrong with --resume alone.

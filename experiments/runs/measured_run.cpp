@@ -44,7 +44,7 @@ MeasuredRun measured_run(System& system, std::string_view method, const StepPlan
                          const EnergyWatch& watch, const State<Vector>& start, const Observer& observe,
                          const StepPolicy& policy) {
   CountingSystem counted(system);
-  const auto stepper = make_stepper(method);
+  const auto stepper = Method(method).stepper();
   MeasuredRun run;
   run.end = start;
   const double before = cpu_seconds();

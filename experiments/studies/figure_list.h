@@ -10,6 +10,12 @@
 
 namespace springstab {
 
+struct FiguresOptions {
+  std::vector<std::string> names;  // empty for all
+  bool quick = false;
+  std::string plots, output = "paper_figures";  // folders
+};
+
 /// A figure. `draw` computes its data, writes them beside the picture and plots; it returns what the report
 /// tells: "files", "holds" (whether what the figure claims came out; a bool), "summary" (one line).
 struct Figure {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/method.h"
 #include "experiments/region.h"
 #include "experiments/studies/figure_list.h"
 #include "experiments/studies/gnuplot.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -61,7 +61,7 @@ Json draw_region(const std::string& method, const std::string& number, const std
                    bounded ? c.x_at_y_max : 0, bounded ? c.y_max : 0, has_line, line_x);
   const OverStable over = over_stable_part(region.pieces(window));
   settings += text("has_over=%d; over_x=%.9g; over_y=%.9g; ", over.exists, over.x, over.y);
-  settings += "method=" + gnuplot_literal(std::string(find_method(method).title)) +
+  settings += "method=" + gnuplot_literal(Method(method).info().title) +
               "; number=" + gnuplot_literal(number) + "; data=" + gnuplot_literal(base) + "; ";
   std::vector<std::string> files = draw(options.plots + "/region.gp", settings, base);
   for (const char* part : {"_boundary.csv", "_pieces.csv", "_cells.csv"}) files.push_back(base + part);
@@ -82,10 +82,10 @@ std::vector<Figure> region_figures() {
   const std::map<std::string_view, std::string> numbered{
       {"explicit-euler", "1"}, {"rk4", "2"}, {"implicit-euler", "3"}};
   std::vector<Figure> figures;
-  for (const MethodInfo& info : all_methods()) {
-    if (info.linearized) continue;  // the region of the method inside
-    const std::string method(info.name);
-    const auto found = numbered.find(info.name);
+  for (const Method& each : all_methods()) {
+    if (each.info().linearized) continue;  // the region of the method inside
+    const std::string method(each.name());
+    const auto found = numbered.find(each.name());
     const std::string number = found == numbered.end() ? "" : found->second;
     const auto draw_it = [method, number](const std::string& base, const CommonOptions& common,
                                           const FiguresOptions& options) {

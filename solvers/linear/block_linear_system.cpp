@@ -67,25 +67,26 @@ bool BlockLinearSystem::invert_diagonal_blocks(double mass_factor, double stiffn
   return true;
 }
 
-// M (1 + hD' + h²K') = (1 + h d0) M + (h alpha + h²) K + hC is symmetric.
-SolveReport BlockLinearSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
+// M (m + dD' + kK') = (m + d d0) M + (d alpha + k) K + dC is symmetric.
+SolveReport BlockLinearSystem::solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) {
   rhs_.resize(size());
   for (long i = 0; i < stiffness_.rows(); ++i) rhs_.segment<3>(3 * i) = mass_[i] * rhs.segment<3>(3 * i);
-  if (solver.kind == SolverKind::cholesky) return solve_by_cholesky(h, out);
-  return solver.preconditioner == Preconditioner::block_ssor ? solve_by_block_ssor(h, out)
-                                                             : solve_by_block_jacobi(h, out);
+  if (solver.kind == SolverKind::cholesky) return solve_by_cholesky(shift, out);
+  return solver.preconditioner == Preconditioner::block_ssor ? solve_by_block_ssor(shift, out)
+                                                             : solve_by_block_jacobi(shift, out);
 }
 
-SolveReport BlockLinearSystem::solve_by_cholesky(double h, Vector& out) {
-  if (!cholesky_.factorize(1 + h * damping_.d0, mass_, h * (damping_.alpha + h), stiffness_, h,
-                           own_damping()))
+SolveReport BlockLinearSystem::solve_by_cholesky(const Shift& shift, Vector& out) {
+  if (!cholesky_.factorize(shift.mass + shift.damping * damping_.d0, mass_,
+                           shift.of_stiffness(damping_.alpha), stiffness_, shift.damping, own_damping()))
     return {.status = StepStatus::not_positive_definite};
   cholesky_.solve(rhs_, out);
   return {.status = out.allFinite() ? StepStatus::done : StepStatus::diverged};
 }
 
-SolveReport BlockLinearSystem::solve_by_block_ssor(double h, Vector& out) {
-  if (!ssor_.set(1 + h * damping_.d0, mass_, h * (damping_.alpha + h), stiffness_, h, own_damping()))
+SolveReport BlockLinearSystem::solve_by_block_ssor(const Shift& shift, Vector& out) {
+  if (!ssor_.set(shift.mass + shift.damping * damping_.d0, mass_, shift.of_stiffness(damping_.alpha),
+                 stiffness_, shift.damping, own_damping()))
     return {.status = StepStatus::not_positive_definite};
   ssor_.transform(rhs_, transformed_rhs_);
   SolveReport report =
@@ -96,9 +97,10 @@ SolveReport BlockLinearSystem::solve_by_block_ssor(double h, Vector& out) {
   return report;
 }
 
-SolveReport BlockLinearSystem::solve_by_block_jacobi(double h, Vector& out) {
-  const double mass_factor = 1 + h * damping_.d0, stiffness_factor = h * (damping_.alpha + h);
-  if (!invert_diagonal_blocks(mass_factor, stiffness_factor, h))
+SolveReport BlockLinearSystem::solve_by_block_jacobi(const Shift& shift, Vector& out) {
+  const double mass_factor = shift.mass + shift.damping * damping_.d0,
+               stiffness_factor = shift.of_stiffness(damping_.alpha), damping_factor = shift.damping;
+  if (!invert_diagonal_blocks(mass_factor, stiffness_factor, damping_factor))
     return {.status = StepStatus::not_positive_definite};
   const auto apply = [&](const Vector& p, Vector& q) {
     q.resize(size());
@@ -110,7 +112,7 @@ SolveReport BlockLinearSystem::solve_by_block_jacobi(double h, Vector& out) {
     stiffness_.multiply_rows(p.data(), [&](long i, const Eigen::Vector3d& force) {
       const Eigen::Vector3d pi = p.segment<3>(3 * i);
       Eigen::Vector3d qi = stiffness_factor * force + mass_factor * mass_[i] * pi;
-      if (own_damping_) qi += h * product_.segment<3>(3 * i);
+      if (own_damping_) qi += damping_factor * product_.segment<3>(3 * i);
       q.segment<3>(3 * i) = qi;
       dot += pi.array() * qi.array();
     });

@@ -43,14 +43,14 @@ class BlockLinearSystem final : public LinearSystem {
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
-  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override;
+  SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 
  private:
-  SolveReport solve_by_cholesky(double h, Vector& out);
-  SolveReport solve_by_block_jacobi(double h, Vector& out);
-  SolveReport solve_by_block_ssor(double h, Vector& out);
+  SolveReport solve_by_cholesky(const Shift& shift, Vector& out);
+  SolveReport solve_by_block_jacobi(const Shift& shift, Vector& out);
+  SolveReport solve_by_block_ssor(const Shift& shift, Vector& out);
   bool invert_diagonal_blocks(double mass_factor, double stiffness_factor, double damping_factor);
 
   std::vector<double> mass_, inverse_mass_;

@@ -1,14 +1,14 @@
 #include "solvers/linear/matrix_system.h"
 
 #include <Eigen/SparseCholesky>
-#include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace springstab {
 
 struct MatrixSystem::Factors {
   Eigen::SimplicialLLT<SparseMatrix> mass, shifted;
-  double h = NAN;  // of `shifted`
+  std::optional<Shift> shift;  // of `shifted`
 };
 
 MatrixSystem::MatrixSystem(StructuralMatrices matrices)
@@ -36,14 +36,14 @@ void MatrixSystem::damping_times(const Vector& u, Vector& out) {
   out = factors_->mass.solve(force_);
 }
 
-SolveReport MatrixSystem::solve_shifted(double h, const Vector& rhs, Vector& out) {
+SolveReport MatrixSystem::solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) {
   if (!matrices_.symmetric)
     throw std::invalid_argument("K or D is not symmetric, expected symmetric ones for an implicit step");
-  if (factors_->h != h) {
-    SparseMatrix shifted = matrices_.mass + h * h * matrices_.stiffness;
-    if (matrices_.has_damping()) shifted += h * matrices_.damping;
+  if (factors_->shift != shift) {
+    SparseMatrix shifted = shift.mass * matrices_.mass + shift.stiffness * matrices_.stiffness;
+    if (matrices_.has_damping()) shifted += shift.damping * matrices_.damping;
     factors_->shifted.compute(shifted);
-    factors_->h = h;
+    factors_->shift = shift;
   }
   if (factors_->shifted.info() != Eigen::Success) return {.status = StepStatus::not_positive_definite};
   force_.noalias() = matrices_.mass * rhs;

@@ -9,7 +9,8 @@
 namespace springstab {
 
 /// Where K or D is not symmetric an implicit step throws std::invalid_argument.
-/// Solves with M and with M + hD + h²K by sparse Cholesky factors; the latter is kept while h stays the same.
+/// Solves with M and with mM + dD + kK by sparse Cholesky factors; the latter is kept while the shift stays
+/// the same.
 class MatrixSystem final : public LinearSystem {
  public:
   explicit MatrixSystem(StructuralMatrices matrices);
@@ -21,7 +22,7 @@ class MatrixSystem final : public LinearSystem {
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
-  SolveReport solve_shifted(double h, const Vector& rhs, Vector& out) override;
+  SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 

@@ -1,4 +1,4 @@
-// K, M and D of a structure as matrices, checked and made ready: symmetric, and without massless unknowns.
+// K, M and D of a structure as matrices, checked and made ready: finite, of one size, no unknown massless.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -18,11 +18,12 @@ struct StructuralMatrices {
   bool has_damping() const { return damping.nonZeros() > 0; }
 };
 
-/// Checks the matrices (square, of one size, finite, symmetric to 1e-10 of their largest entry; what is left
-/// of the asymmetry is averaged away) and eliminates unknowns whose row of M is zero: they follow the others,
-/// K ← K_aa - K_ab K_bb⁻¹ K_ba and likewise D, which needs K_bb positive definite and D = alpha K in their rows,
-/// with one alpha >= 0: what they are away from there decays at the rate 1/alpha, whatever the others do. An
-/// empty M stands for the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
+/// Checks the matrices (square, of one size, finite, a_ij and a_ji apart by at most 1e-10 of the larger or of
+/// √(a_ii a_jj); their mean replaces both) and eliminates unknowns whose row of M is zero: they follow,
+/// K ← K_aa - K_ab K_bb⁻¹ K_ba and likewise D, which needs K_bb positive definite and D = alpha K in their
+/// rows, with one alpha >= 0: what they are away from there decays at the rate 1/alpha, whatever the others
+/// do. An empty M stands for the unit matrix. Throws std::invalid_argument that names the matrix and the
+/// rule.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
                            const SparseMatrix& damping = {});
 

@@ -8,9 +8,10 @@
 
 namespace springstab {
 
-template <class V>
-struct ExplicitEuler : ExplicitRungeKutta<V, ExplicitTableau<1>{.b = {1}}> {
-  static constexpr MethodInfo info{"explicit-euler", "explicit Euler", 1, false};
+struct ExplicitEuler {
+  MethodInfo info() const { return {"explicit-euler", "explicit Euler", 1, false}; }
+  template <class V>
+  using Steps = ExplicitRungeKutta<V, ExplicitTableau<1>{.b = {1}}>;
 };
 
 }  // namespace springstab

@@ -9,18 +9,22 @@
 
 namespace springstab {
 
-template <class V>
-class ImplicitEuler {
- public:
-  static constexpr MethodInfo info{"implicit-euler", "implicit Euler", 1, true};
+struct ImplicitEuler {
+  MethodInfo info() const { return {"implicit-euler", "implicit Euler", 1, true}; }
+  template <class V>
+  class Steps;
+};
 
+template <class V>
+class ImplicitEuler::Steps {
+ public:
   template <Linearizable<V> System>
   StepStatus step(System& system, double h, State<V>& state) {
     system.acceleration(state.x, state.v, a_);
     auto& linear = system.linearized(state.x, state.v);
     linear.stiffness_times(state.v, v_);
     a_ = h * (a_ - h * v_);
-    const SolveReport solved = linear.solve_shifted(h, a_, v_);
+    const SolveReport solved = linear.solve_shifted({1, h, h * h}, a_, v_);
     if (solved.status != StepStatus::done) return solved.status;
     v_ = state.v + v_;
     x_ = state.x + h * v_;

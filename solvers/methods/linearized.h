@@ -13,7 +13,7 @@
 
 namespace springstab {
 
-template <template <class> class Inner, class V>
+template <class Inner, class V>
 class Linearized {
  public:
   template <Linearizable<V> System>
@@ -53,22 +53,26 @@ class Linearized {
     frozen_.constant = frozen_.constant - work_;
   }
 
-  Inner<V> inner_;
+  StepsOf<Inner, V> inner_ = make_steps<V>(Inner());
   Frozen frozen_;
   V work_;
   long steps_per_linearization_ = 1;
   long steps_ = 0;
 };
 
-template <class V>
-struct LinearizedExplicitEuler : Linearized<ExplicitEuler, V> {
-  static constexpr MethodInfo info{"linearized-explicit-euler", "linearized explicit Euler", 1, false, true};
+struct LinearizedExplicitEuler {
+  MethodInfo info() const {
+    return {"linearized-explicit-euler", "linearized explicit Euler", 1, false, true};
+  }
+  template <class V>
+  using Steps = Linearized<ExplicitEuler, V>;
 };
 
 /// Of order 2, since K and D do not follow the state within a step, and 1 where D depends on x.
-template <class V>
-struct LinearizedRk4 : Linearized<Rk4, V> {
-  static constexpr MethodInfo info{"linearized-rk4", "linearized Runge-Kutta 4", 2, false, true};
+struct LinearizedRk4 {
+  MethodInfo info() const { return {"linearized-rk4", "linearized Runge-Kutta 4", 2, false, true}; }
+  template <class V>
+  using Steps = Linearized<Rk4, V>;
 };
 
 }  // namespace springstab

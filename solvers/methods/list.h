@@ -1,4 +1,4 @@
-// The list of all methods. A new method is a new file beside this one and one name in `Methods`:
+// The list of the methods built in. A new one is a new file beside this one and one name in `Methods`:
 // regions, limits, simulations, figures and the tests that go over all methods then have it.
 #pragma once
 
@@ -11,12 +11,12 @@
 
 namespace springstab {
 
-template <template <class> class... Method>
+template <class... Description>
 struct MethodList {
-  /// Calls visit.template operator()<Method>() for every method, in order.
+  /// Calls visit(description) for every method, in order.
   template <class Visitor>
   static void for_each(Visitor&& visit) {
-    (visit.template operator()<Method>(), ...);
+    (visit(Description()), ...);
   }
 };
 

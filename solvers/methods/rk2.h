@@ -8,9 +8,10 @@ namespace springstab {
 
 inline constexpr ExplicitTableau<2> midpoint_tableau{.a = {{{}, {0.5}}}, .b = {0, 1}};
 
-template <class V>
-struct Rk2 : ExplicitRungeKutta<V, midpoint_tableau> {
-  static constexpr MethodInfo info{"rk2", "midpoint (RK2)", 2, false};
+struct Rk2 {
+  MethodInfo info() const { return {"rk2", "midpoint (RK2)", 2, false}; }
+  template <class V>
+  using Steps = ExplicitRungeKutta<V, midpoint_tableau>;
 };
 
 }  // namespace springstab

@@ -11,9 +11,10 @@ inline constexpr ExplicitTableau<4> rk4_tableau{
     .b = {1. / 6, 1. / 3, 1. / 3, 1. / 6},
 };
 
-template <class V>
-struct Rk4 : ExplicitRungeKutta<V, rk4_tableau> {
-  static constexpr MethodInfo info{"rk4", "Runge-Kutta 4", 4, false};
+struct Rk4 {
+  MethodInfo info() const { return {"rk4", "Runge-Kutta 4", 4, false}; }
+  template <class V>
+  using Steps = ExplicitRungeKutta<V, rk4_tableau>;
 };
 
 }  // namespace springstab

@@ -7,11 +7,15 @@
 
 namespace springstab {
 
-template <class V>
-class SymplecticEuler {
- public:
-  static constexpr MethodInfo info{"symplectic-euler", "symplectic Euler", 1, false};
+struct SymplecticEuler {
+  MethodInfo info() const { return {"symplectic-euler", "symplectic Euler", 1, false}; }
+  template <class V>
+  class Steps;
+};
 
+template <class V>
+class SymplecticEuler::Steps {
+ public:
   template <Accelerating<V> System>
   StepStatus step(System& system, double h, State<V>& state) {
     x_ = state.x + h * state.v;

@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
+#include "analysis/method.h"
 #include "experiments/studies/bench/measure.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/spring_cloth.h"
-#include "solvers/stepper.h"
 
 namespace springstab::bench::nets {
 namespace {
@@ -33,7 +33,7 @@ Net make(int n) {
            static_cast<double>(n) * n};
   made.state = made.scene->rest_state();
   if (n <= 128) {
-    const auto stepper = make_stepper("implicit-euler");
+    const auto stepper = Method("implicit-euler").stepper();
     for (int k = 0; k < 20; ++k) stepper->step(*made.scene, h_implicit, made.state);
   } else {
     for (Eigen::Index i = 0; i < made.state.x.size(); i += 3) {
@@ -131,7 +131,7 @@ void assembly(benchmark::State& state) {
 
 // A step of linearized explicit Euler: one product with K of x + alpha v, and two vectors advanced.
 void linear_substep(benchmark::State& state) {
-  const auto stepper = make_stepper("explicit-euler");
+  const auto stepper = Method("explicit-euler").stepper();
   State<Vector> s = net(static_cast<int>(state.range(0))).state;
   s.x *= 1e-6;  // a small displacement
   run_in_products(state, [&](Net&, BlockLinearSystem& linear) {
@@ -140,7 +140,7 @@ void linear_substep(benchmark::State& state) {
 }
 
 void implicit_step(benchmark::State& state, Preconditioner preconditioner, double tolerance) {
-  const auto stepper = make_stepper("implicit-euler");
+  const auto stepper = Method("implicit-euler").stepper();
   State<Vector> s;
   run_in_products(state, [&](Net& n, BlockLinearSystem& linear) {
     linear.solver = {.tolerance = tolerance, .preconditioner = preconditioner};
@@ -153,7 +153,8 @@ void implicit_step(benchmark::State& state, Preconditioner preconditioner, doubl
   n.scene->acceleration(n.state.x, n.state.v, a);
   linear.stiffness_times(n.state.v, y);
   a = h_implicit * (a - h_implicit * y);
-  state.counters["iterations"] = static_cast<double>(linear.solve_shifted(h_implicit, a, y).iterations);
+  state.counters["iterations"] =
+      static_cast<double>(linear.solve_shifted({1, h_implicit, h_implicit * h_implicit}, a, y).iterations);
   linear.solver = {};
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
 #include "analysis/regions/amplification.h"
-#include "solvers/stepper.h"
 
 namespace springstab::bench::radii {
 namespace {
@@ -27,9 +27,8 @@ void spectral_radius(benchmark::State& state, std::string_view method) {
 }
 
 const bool registered = [] {
-  for (const springstab::MethodInfo& method : springstab::all_methods())
-    benchmark::RegisterBenchmark(("spectral_radius/" + std::string(method.name)).c_str(), spectral_radius,
-                                 method.name)
+  for (const springstab::Method& method : springstab::all_methods())
+    benchmark::RegisterBenchmark(("spectral_radius/" + method.name()).c_str(), spectral_radius, method.name())
         ->Unit(benchmark::kMillisecond);
   return true;
 }();

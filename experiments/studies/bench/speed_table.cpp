@@ -35,7 +35,7 @@ Subject load(const Model& model) {
 /// 0.2 s into the fall.
 State<Vector> falling(Scene& scene) {
   State<Vector> state = scene.rest_state();
-  const auto stepper = make_stepper("implicit-euler");
+  const auto stepper = Method("implicit-euler").stepper();
   for (int k = 0; k < 20; ++k) stepper->step(scene, h_implicit, state);
   return state;
 }
@@ -54,7 +54,7 @@ void implicit_step(benchmark::State& state, const Model& model, SolverKind solve
   double least = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     State<Vector> s = scene.rest_state();
-    const auto stepper = make_stepper("implicit-euler");
+    const auto stepper = Method("implicit-euler").stepper();
     least = std::min(least, least_seconds(1, [&] {
                        for (int k = 0; k < steps; ++k)
                          if (stepper->step(scene, h_implicit, s) != StepStatus::done)
@@ -68,7 +68,7 @@ void implicit_step(benchmark::State& state, const Model& model, SolverKind solve
 void force_step(benchmark::State& state, const Model& model) {
   Subject subject = load(model);
   State<Vector> s = falling(*subject.scene());
-  const auto stepper = make_stepper("symplectic-euler");
+  const auto stepper = Method("symplectic-euler").stepper();
   double least = std::numeric_limits<double>::infinity();
   for (auto _ : state)
     least = std::min(least, least_seconds(1, [&] { stepper->step(subject.system(), 1e-9, s); }));
@@ -149,7 +149,7 @@ void memory(benchmark::State& state, Cloth (*make)(const Grid&), const char* met
     const double before = resident_bytes();
     Scene scene(cloth, {0}, {0, -9.81, 0}, {1, 1e-3});
     State<Vector> s = scene.rest_state();
-    const auto stepper = make_stepper(method);
+    const auto stepper = Method(method).stepper();
     stepper->step(scene, 1e-5, s);
     state.counters["bytes/particle"] = (resident_bytes() - before) / n / n;
   }

@@ -2,9 +2,10 @@
 #include <bit>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/runs/identity.h"
 #include "experiments/runs/journal.h"
 #include "experiments/studies/complexity/complexity_figures.h"
@@ -12,6 +13,12 @@
 
 namespace springstab {
 namespace {
+
+struct ComplexityOptions {
+  bool quick = false;
+  std::string plots, output;  // folders; without output nothing is written
+  bool resume = false;
+};
 
 /// The first row is the heading.
 using Table = std::vector<std::vector<std::string>>;
@@ -121,8 +128,6 @@ Json json_of(const StudyResult& result) {
   return {{"name", study_file(result.study)}, {"rounds", result.rounds}, {"series", list}};
 }
 
-}  // namespace
-
 int run_complexity(const CommonOptions& common, const ComplexityOptions& options) {
   if (!options.output.empty()) {
     if (!std::filesystem::is_regular_file(options.plots + "/complexity.gp"))
@@ -169,6 +174,32 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
   }
   if (std::cout.flush()) journal.finish();
   return finished ? done : no_answer;
+}
+
+}  // namespace
+
+Subcommand complexity_command() {
+  const auto o = std::make_shared<ComplexityOptions>();
+  return {
+      .name = "complexity",
+      .title = "What the methods cost on a draping cloth",
+      .footer =
+          "CPU time against the number of particles, the square root of k0 [1/s] and implicit Euler's step "
+          "[s]: "
+          "the\n"
+          "exponent of its growth with a 95 % confidence interval, medians of five interleaved rounds, in 5 "
+          "to 7 "
+          "minutes.\n"
+          "JSON: tables[] (as printed), studies[] {name, series[] {name, exponent, half_width, points[]}}, "
+          "all_finished,\n"
+          "rollbacks, provenance, files. Exit status 3: a run did not come to its end.\n\n"
+          "example: springstab complexity --output figures\n"
+          "         springstab complexity --output figures --resume    (after Ctrl-C or a crash)",
+      .options =
+          {Option("--quick", &o->quick, "smaller cloths, a shorter time, three rounds: within a minute"),
+           Option("--output", &o->output, "folder for Figures 5 to 7 and every run as CSV").shown_as("DIR"),
+           plots_option(o->plots), resume_option(o->resume)},
+      .run = [o](const CommonOptions& common) { return run_complexity(common, *o); }};
 }
 
 }  // namespace springstab

@@ -1,10 +1,10 @@
 #include "experiments/studies/complexity/race.h"
+#include "analysis/method.h"
 
 #include <algorithm>
 #include <stdexcept>
 
 #include "experiments/step_chooser.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -14,7 +14,7 @@ SimulateOptions options_for(const Heat& heat, const std::string& method, double 
   options.method = method;
   options.duration = duration;
   options.relinearize = heat.interval;
-  if (find_method(method).implicit) options.step = heat.interval;
+  if (Method(method).info().implicit) options.step = heat.interval;
   return options;
 }
 
@@ -26,7 +26,7 @@ void set_damping(Subject& subject, const Heat& heat, const CommonOptions& common
   }
 }
 
-// Of one run; only cpu_seconds differs from one to the next.
+// The result of one run; only cpu_seconds differs from one to the next.
 HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
   Subject subject(describe(heat.drape));
   subject.scene()->set_hessian(Hessian::projected);
@@ -38,7 +38,7 @@ HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
   const std::optional<StepPlan> plan = chooser.first_plan(heat.k0);
   if (!plan) throw std::runtime_error(heat.contestant.name + ": " + chooser.reason());
   const State<Vector> start = subject.initial_state(common.seed);
-  const MethodInfo& method = find_method(heat.contestant.method);
+  const MethodInfo& method = Method(heat.contestant.method).info();
   if (method.implicit || method.linearized)  // makes the matrix: set-up, not part of the run
     subject.system().linearized(start.x, start.v);
   const MeasuredRun measured = measured_run(subject.system(), heat.contestant.method, *plan,

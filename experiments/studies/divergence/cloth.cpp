@@ -20,7 +20,7 @@ constexpr double k0_tolerance = 1e-4;
 
 /// One damping of one method on the scene.
 struct Case {
-  const MethodInfo& method;
+  Method method;
   std::string damping;
   RayleighModes modes;
   double h_limit;
@@ -28,9 +28,9 @@ struct Case {
 
 std::vector<Case> cases(double k0) {
   std::vector<Case> all;
-  for (const MethodInfo& method : all_methods()) {
-    if (method.implicit) continue;
-    const StabilityRegion& region = stability_region(method.name);
+  for (const Method& method : all_methods()) {
+    if (method.info().implicit) continue;
+    const StabilityRegion& region = stability_region(method);
     const double designed = design_damping(region, k0, air_drag).alpha;
     const std::pair<const char*, double> alphas[] = {
         {"air drag", 0}, {"alpha = 1e-4 s", 1e-4}, {"fitted", designed}};
@@ -44,9 +44,9 @@ std::vector<Case> cases(double k0) {
   return all;
 }
 
-StepPlan plan(const MethodInfo& method, double h, double duration) {
+StepPlan plan(const Method& method, double h, double duration) {
   StepPlan result{h, std::max(1L, std::lround(duration / h))};
-  if (method.linearized) {
+  if (method.info().linearized) {
     result.steps_per_linearization = std::max(1L, std::lround(linearize_every / h));
     result.steps = std::max(result.steps, result.steps_per_linearization);
   }
@@ -62,7 +62,7 @@ double spectral_radius_at(const Case& c, double h) {
     x.push_back(h * (c.modes.d0 + c.modes.alpha * k));
     y.push_back(h * h * k);
   }
-  spectral_radius(c.method.name, x, y, radii);
+  spectral_radius(c.method, x, y, radii);
   return *std::max_element(radii.begin(), radii.end());
 }
 
@@ -76,13 +76,13 @@ bool linear_run_diverges(Scene& scene, const State<Vector>& start, const Case& c
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (double& x : state.x) x = uniform(random);
   const EnergyWatch watch{.initial_energy = linear.potential_energy(state.x), .may_grow = true};
-  const auto stepper = make_stepper(c.method.name);
+  const auto stepper = c.method.stepper();
   return simulate(linear, *stepper, {h, steps}, watch, state).status != StepStatus::done;
 }
 
 bool scene_run_diverges(Subject& subject, const State<Vector>& start, const Case& c, double h,
                         double duration) {
-  const auto stepper = make_stepper(c.method.name);
+  const auto stepper = c.method.stepper();
   State<Vector> state = start;
   return simulate(subject.system(), *stepper, plan(c.method, h, duration),
                   tightened(subject.energy_watch(start)), state)
@@ -92,11 +92,11 @@ bool scene_run_diverges(Subject& subject, const State<Vector>& start, const Case
 // The largest k0(t)/k0(0) of the motion, at 20 times along it.
 double k0_growth(Subject& subject, const State<Vector>& start, double k0, double h,
                  const ClothStudyOptions& options) {
-  const auto stepper = make_stepper("rk4");
+  const auto stepper = Method("rk4").stepper();
   State<Vector> state = start;
   double largest = 1, due = 0;
-  simulate(subject.system(), *stepper, plan(find_method("rk4"), h, options.duration),
-           subject.energy_watch(start), state, [&](const SimulationResult& so_far, const State<Vector>& s) {
+  simulate(subject.system(), *stepper, plan("rk4", h, options.duration), subject.energy_watch(start), state,
+           [&](const SimulationResult& so_far, const State<Vector>& s) {
              if (so_far.time < due) return true;
              due += options.duration / 20;
              const StiffestMode now = estimated_stiffest_mode(
@@ -107,20 +107,20 @@ double k0_growth(Subject& subject, const State<Vector>& start, double k0, double
   return largest;
 }
 
-// Of one method under one damping, which the scene must have by now. k0_growth is left to the caller.
+// The runs of one method under one damping, which the scene must have by now. k0_growth is left to the
+// caller.
 ClothStudy study_case(const std::string& name, Subject& subject, const State<Vector>& start, const Case& c,
                       const ClothStudyOptions& options) {
   Scene& scene = *subject.scene();
   ClothStudy study;
-  NeededSafety needed{name, c.damping, std::string(c.method.name), c.modes.d0, c.modes.alpha, c.h_limit, 1,
-                      {},   {}};
+  NeededSafety needed{name, c.damping, c.method.name(), c.modes.d0, c.modes.alpha, c.h_limit, 1, {}, {}};
   bool bounded = true;
   for (const double ratio : options.ratios) {
     const double h = ratio * c.h_limit;
     const auto keep = [&](bool linear, long steps, bool diverged) {
       study.runs.push_back({name, c.damping, needed.method, linear, ratio, h, steps, diverged});
     };
-    if (!c.method.linearized) {  // else the same as the method inside
+    if (!c.method.info().linearized) {  // else the same as the method inside
       const bool diverged = linear_run_diverges(scene, start, c, h, options.linear_steps, options.seed);
       const bool disagrees = diverged != (ratio > 1);
       study.linear_disagreements += disagrees;
@@ -135,7 +135,7 @@ ClothStudy study_case(const std::string& name, Subject& subject, const State<Vec
     if (bounded) needed.bounded_ratio = ratio;
   }
   if (needed.bounded_ratio)
-    needed.factor = safety_for_step(stability_region(c.method.name), c.modes,
+    needed.factor = safety_for_step(stability_region(c.method), c.modes,
                                     std::min(1.0, *needed.bounded_ratio) * c.h_limit, most_safety);
   study.needed.push_back(needed);
   return study;
@@ -157,7 +157,7 @@ Json json_of(const ClothStudy& study) {
 }
 
 void append(ClothStudy& study, const std::string& name, const Case& c, const Json& one) {
-  const std::string method(c.method.name);
+  const std::string method(c.method.name());
   for (const Json& r : one.at("runs"))
     study.runs.push_back(
         {name, c.damping, method, r.at("linear"), r.at("ratio"), r.at("h"), r.at("steps"), r.at("diverged")});
@@ -180,9 +180,9 @@ ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStu
   ClothStudy study;
   const std::vector<Case> all = cases(k0);
   for (const Case& c : all) {
-    append(study, name, c, journal.piece(name + ", " + c.damping + ", " + std::string(c.method.name), [&] {
+    append(study, name, c, journal.piece(name + ", " + c.damping + ", " + c.method.name(), [&] {
       scene.set_damping({c.modes.d0, c.modes.alpha});
-      scene.set_hessian(c.method.linearized ? Hessian::projected : Hessian::exact);
+      scene.set_hessian(c.method.info().linearized ? Hessian::projected : Hessian::exact);
       const bool known = !study.needed.empty() && study.needed.back().damping == c.damping;
       const double growth =
           known ? study.needed.back().k0_growth : k0_growth(subject, start, k0, 0.5 * c.h_limit, options);

@@ -1,12 +1,13 @@
 // `springstab divergence`: stable regions and limits against what simulations do.
 #include "experiments/studies/divergence/divergence.h"
+#include "analysis/method.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
-#include "experiments/command/options.h"
-#include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/region.h"
 #include "experiments/runs/identity.h"
@@ -14,17 +15,16 @@
 #include "experiments/studies/divergence/cloth.h"
 #include "experiments/studies/divergence/examples.h"
 #include "solvers/io/input_error.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
 
-Json compared(const MethodInfo& info, const CommonOptions& common, const DivergenceOptions& options,
+Json compared(const Method& method, const CommonOptions& common, const DivergenceOptions& options,
               const std::string& path) {
-  const CellGrid grid{stability_region(info.name).natural_window(0.15), options.cells, options.cells};
+  const CellGrid grid{stability_region(method).natural_window(0.15), options.cells, options.cells};
   const CellComparison c =
-      compare_cells(info.name, grid, options.steps, common.threads, path, CellsWritten::disagreeing);
-  return {{"method", info.name},
+      compare_cells(method.name(), grid, options.steps, common.threads, path, CellsWritten::disagreeing);
+  return {{"method", method.name()},
           {"cells", c.cells},
           {"steps", c.steps},
           {"diverged", c.diverged},
@@ -37,14 +37,14 @@ Json plane(const CommonOptions& common, const DivergenceOptions& options, Journa
            Progress& progress) {
   Json rows = Json::array();
   long methods = 0;
-  for (const MethodInfo& info : all_methods()) methods += !info.linearized;
-  for (const MethodInfo& info : all_methods()) {
-    if (info.linearized) continue;  // the region of the method inside
-    const std::string method(info.name);
+  for (const Method& each : all_methods()) methods += !each.info().linearized;
+  for (const Method& each : all_methods()) {
+    if (each.info().linearized) continue;  // the region of the method inside
+    const std::string method(each.name());
     const std::string path = options.output.empty() ? "" : options.output + "/divergence_" + method + ".csv";
-    if (journal.has_next(1) && !std::filesystem::exists(path)) compared(info, common, options, path);
+    if (journal.has_next(1) && !std::filesystem::exists(path)) compared(each, common, options, path);
     rows.push_back(
-        journal.piece("cells of " + method, [&] { return compared(info, common, options, path); }));
+        journal.piece("cells of " + method, [&] { return compared(each, common, options, path); }));
     progress.update(0.3 * static_cast<double>(rows.size()) / static_cast<double>(methods));
   }
   return rows;
@@ -229,7 +229,7 @@ Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
   return report_of(common, options, std::move(scenes), Journal::none());
 }
 
-int run_divergence(const CommonOptions& common, const DivergenceOptions& options) {
+static int run_divergence(const CommonOptions& common, const DivergenceOptions& options) {
   Scenes scenes = subjects(options);
   Json inputs = Json::array();
   for (const std::string& scene : options.scenes) inputs.push_back(contents_of(scene, options.resume));
@@ -247,6 +247,60 @@ int run_divergence(const CommonOptions& common, const DivergenceOptions& options
     print(report);
   if (std::cout.flush()) journal.finish();
   return done;
+}
+
+namespace {
+
+// As it is typed: --quick has fewer cells and steps unless they are given.
+struct TypedDivergenceOptions : DivergenceOptions {
+  std::optional<int> given_cells{};
+  std::optional<long> given_steps{};
+
+  DivergenceOptions resolved() const {
+    DivergenceOptions all = *this;
+    all.cells = given_cells.value_or(quick ? 100 : cells);
+    all.steps = given_steps.value_or(quick ? 500 : steps);
+    return all;
+  }
+};
+
+}  // namespace
+
+Subcommand divergence_command() {
+  const auto o = std::make_shared<TypedDivergenceOptions>();
+  return {
+      .name = "divergence",
+      .title = "Compares regions and limits with simulations",
+      .footer =
+          "X-Y plane: one oscillator per cell and method. `differ` counts those that diverge where |λ| <= 1 "
+          "or "
+          "stay\n"
+          "bounded where it is larger, `outside it` those of them for which the steps were enough to tell.\n"
+          "Cloth: runs at 0.5 to 1.5 of the limit of the linear system at the start, under three dampings: "
+          "air "
+          "drag,\n"
+          "alpha = 1e-4 s, and fitted to the step. A scene's own `damping` is set aside, a material with "
+          "damping "
+          "refused.\n"
+          "`bounded`: up to this ratio no run of the scene diverged. `k0 grows`: largest k0(t)/k0(0).\n"
+          "`needs F`: the safety factor on k0 that would have given such a step. - where even the shortest "
+          "one "
+          "tried\n"
+          "diverged.\n"
+          "JSON: cells, disagreements, outside_band, plane[], safety[], switching, pendulum.\n\n"
+          "example: springstab divergence skirt.obj --pin 0-15 --output results\n"
+          "         the same with --resume after Ctrl-C or a crash",
+      .options =
+          {Option("SCENES", &o->scenes, "scene files and meshes, besides the built-in scenes")
+               .shown_as("FILE"),
+           Option("--pin", &o->pin, "pins of the meshes: particle numbers like 0,5-9").with_default(),
+           Option("--cells", &o->given_cells, "cells of the X-Y plane, per side")
+               .with_default(std::to_string(o->cells)),
+           Option("--steps", &o->given_steps, "steps of each cell").with_default(std::to_string(o->steps)),
+           Option("--quick", &o->quick, "small scenes, few steps; 100 cells a side unless given"),
+           Option("--output", &o->output, "folder for the CSV files").shown_as("DIR"),
+           resume_option(o->resume)},
+      .run = [o](const CommonOptions& common) { return run_divergence(common, o->resolved()); }};
 }
 
 }  // namespace springstab

@@ -1,11 +1,19 @@
 // Theory against simulation, as data: what `springstab divergence` prints and its figures draw.
 #pragma once
 
-#include "experiments/command/options.h"
-#include "experiments/command/output.h"
 #include "experiments/studies/figure_list.h"
 
 namespace springstab {
+
+struct DivergenceOptions {
+  std::vector<std::string> scenes;  // files, besides the built-in ones
+  std::string pin = "0";            // of meshes
+  int cells = 1000;                 // per side of the X-Y plane
+  long steps = 1024;                // of each cell
+  bool quick = false;
+  std::string output;  // folder, empty for none
+  bool resume = false;
+};
 
 /// Compares each method's region with simulated cells and each scene's limits with simulated cloth; writes
 /// the CSV files where a folder is given. Keys: cells, disagreements, outside_band (sums over methods),

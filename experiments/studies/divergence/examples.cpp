@@ -26,7 +26,7 @@ Scene pendulum(double alpha) {
 
 Switching switching_oscillator() {
   constexpr double soft = 2.6, stiff = 3.9, beyond = 0.01;
-  const auto step = [](double y) { return amplification_matrix("explicit-euler", y + beyond, y); };
+  const auto step = [](double y) { return Method("explicit-euler").amplification(y + beyond, y); };
   const auto radius = [](const Eigen::Matrix2d& a) { return a.eigenvalues().cwiseAbs().maxCoeff(); };
   const Eigen::Matrix2d a = step(soft), b = step(stiff);
   Eigen::Vector2d state{1, 0.7};
@@ -54,7 +54,7 @@ Pendulum swinging_pendulum() {
     Scene scene = pendulum(damping);
     State<Vector> state = scene.rest_state();
     const EnergyWatch watch = tightened({.gravity = free_fall, .mass = bob_mass});
-    return simulate(scene, *make_stepper(method), {result.step, steps, each}, watch, state,
+    return simulate(scene, *Method(method).stepper(), {result.step, steps, each}, watch, state,
                     [&](const SimulationResult& so_far, const State<Vector>& s) {
                       observe(scene, so_far, s);
                       return true;

@@ -7,13 +7,13 @@
 #include <random>
 
 #include "analysis/limits/general_damping.h"
+#include "analysis/method.h"
 #include "analysis/regions/amplification.h"
 #include "analysis/spectra/generator_spectrum.h"
 #include "experiments/inputs/subject.h"
 #include "experiments/region.h"
 #include "experiments/studies/divergence/divergence.h"
 #include "experiments/studies/gnuplot.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -52,7 +52,7 @@ bool run_diverges(const StructuralMatrices& s, const std::string& method, double
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (double& x : state.x) x = uniform(random);
   const EnergyWatch watch{.initial_energy = system.potential_energy(state.x)};
-  return simulate(system, *make_stepper(method), {h, map_steps}, watch, state).status != StepStatus::done;
+  return simulate(system, *Method(method).stepper(), {h, map_steps}, watch, state).status != StepStatus::done;
 }
 
 /// One panel of the figure.

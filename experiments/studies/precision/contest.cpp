@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "experiments/command/enum_name.h"
 #include "experiments/command/output.h"
 #include "experiments/studies/precision/peers.h"
 #include "solvers/stepper.h"
@@ -147,17 +148,11 @@ class Climb {
 }  // namespace
 
 const char* name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::finished:
-      return "finished";
-    case Outcome::diverged:
-      return "diverged";
-    case Outcome::timed_out:
-      return "timed-out";
-    case Outcome::failed:
-      break;
-  }
-  return "failed";
+  static constexpr std::pair<Outcome, const char*> names[] = {{Outcome::finished, "finished"},
+                                                              {Outcome::diverged, "diverged"},
+                                                              {Outcome::timed_out, "timed-out"},
+                                                              {Outcome::failed, "failed"}};
+  return name_in(names, outcome);
 }
 
 Json json_of(const Errors& e) {
@@ -182,12 +177,12 @@ const ContestSeries& ContestResult::of(const std::string& name) const {
 
 std::vector<Contestant> method_contestants(Problem& problem) {
   std::vector<Contestant> contestants;
-  for (const MethodInfo& info : all_methods()) {
-    const std::optional<double> limit = problem.limit(info.name);
-    const std::string method(info.name);
-    const bool iterates = info.implicit && problem.scene();
+  for (const Method& each : all_methods()) {
+    const std::optional<double> limit = problem.limit(each.name());
+    const std::string method(each.name());
+    const bool iterates = each.info().implicit && problem.scene();
     for (double tolerance : iterates ? std::vector{1e-2, 1e-4, 1e-8} : std::vector{0.}) {
-      const std::string title(info.title);
+      const std::string title(each.info().title);
       contestants.push_back({.name = iterates ? title + text(" (CG %g)", tolerance) : title,
                              .limit = limit,
                              .settings = steps_for(problem, limit),

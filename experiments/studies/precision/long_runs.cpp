@@ -1,4 +1,5 @@
 #include "experiments/studies/precision/long_runs.h"
+#include "analysis/method.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +9,6 @@
 
 #include "experiments/studies/precision/contest.h"
 #include "experiments/studies/precision/scenes.h"
-#include "solvers/stepper.h"
 
 namespace springstab {
 namespace {
@@ -32,12 +32,12 @@ EnergyDrift energy_drift(long steps, const CommonOptions& common) {
   problem.scene()->solver().tolerance = 1e-8;
   const State<Vector>& start = problem.start();
   const double kinetic = system.kinetic_energy(start.v), before = kinetic + system.potential_energy(start.x);
-  for (const MethodInfo& info : all_methods()) {
+  for (const Method& each : all_methods()) {
     EnergyCurve curve;
-    curve.name = info.title;
+    curve.name = each.info().title;
     double largest = 0, next = 1;
     const MeasuredRun run = measured_run(
-        system, info.name, {result.h, steps, contest_steps_per_linearization}, problem.watch(), start,
+        system, each.name(), {result.h, steps, contest_steps_per_linearization}, problem.watch(), start,
         [&](const SimulationResult& so_far, const State<Vector>& state) {
           const double energy = system.kinetic_energy(state.v) + system.potential_energy(state.x);
           largest = std::max(largest, std::abs(energy - before) / kinetic);

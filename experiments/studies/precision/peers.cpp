@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "analysis/errors/adaptive_integrator.h"
+#include "analysis/gsl/adaptive_integrator.h"
 #include "experiments/studies/precision/scales.h"
 
 namespace springstab {

@@ -25,7 +25,7 @@ class FirstOrderProblem {
   FirstOrderProblem(Problem& problem, double time_limit);
 
   Eigen::Index size() const { return 2 * counted_.size(); }
-  /// Of (x, v) at the start.
+  /// x and v of the start as one vector.
   Vector start() const;
   /// False when time is up or the acceleration is not finite; timed_out() then says which.
   bool derivative(const double* y, double* dydt);

@@ -9,8 +9,8 @@
 #include <random>
 #include <stdexcept>
 
-#include "analysis/errors/adaptive_integrator.h"
 #include "analysis/errors/linear_motion.h"
+#include "analysis/gsl/adaptive_integrator.h"
 #include "experiments/command/output.h"
 #include "experiments/runs/fnv1a.h"
 #include "experiments/studies/precision/peers.h"
@@ -86,7 +86,7 @@ Reference compute(Problem& problem) {
   return reference;
 }
 
-// Of one kind of machine only, which a cache is anyway.
+// The file is for one kind of machine only, which a cache is anyway.
 constexpr char magic[] = "springstab reference 3\n";
 
 void write(const std::string& path, const Reference& reference) {

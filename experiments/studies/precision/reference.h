@@ -15,7 +15,7 @@ inline constexpr int trajectory_samples = 16;
 /// States at the start and at the times i duration / trajectory_samples.
 using Trajectory = std::vector<State<Vector>>;
 
-/// Of one trajectory against another, relative; norms are mass-weighted, ‖u‖² = uᵀMu.
+/// The errors of one trajectory against another, relative; norms are mass-weighted, ‖u‖² = uᵀMu.
 struct Errors {
   double position = 0;    // at the end, of the largest ‖x(t) - x(0)‖ of the reference
   double velocity = 0;    // at the end, of the largest ‖v(t)‖

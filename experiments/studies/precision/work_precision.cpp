@@ -2,9 +2,10 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
-#include "experiments/command/options.h"
 #include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/runs/identity.h"
 #include "experiments/runs/journal.h"
@@ -15,6 +16,17 @@
 
 namespace springstab {
 namespace {
+
+struct WorkPrecisionOptions {
+  InputOptions input;
+  double duration = 0;      // [s]
+  double time_limit = 0.5;  // of one run, CPU seconds
+  int repetitions = 5;
+  std::string damping = "own";
+  bool libraries = true;
+  std::string plots, output;  // folders; no output: nothing is written
+  bool resume = false;
+};
 
 void check(const WorkPrecisionOptions& options) {
   const auto positive = [](const char* option, double value) {
@@ -83,19 +95,16 @@ void print(const ContestResult& result, const Problem& problem) {
             << provenance() << '\n';
 }
 
-}  // namespace
-
 int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options) {
   check(options);
   Subject subject(options.input);
   print_mesh_notes(subject);
   Problem problem(title_of(options.input), std::move(subject), options.duration, common);
-  if (options.designed_damping) problem.design_damping();
+  if (options.damping == "designed") problem.design_damping();
   if (!options.output.empty()) make_folder(options.output);
-  const Json settings{
-      {"duration", options.duration},     {"damping", options.designed_damping ? "designed" : "own"},
-      {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
-      {"libraries", options.libraries},   {"seed", common.seed}};
+  const Json settings{{"duration", options.duration},     {"damping", options.damping},
+                      {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
+                      {"libraries", options.libraries},   {"seed", common.seed}};
   Journal journal(options.output,
                   identity_of("work-precision", settings, contents_of(options.input, options.resume)),
                   options.resume, common.quiet);
@@ -118,6 +127,49 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
   }
   if (std::cout.flush()) journal.finish();
   return done;
+}
+
+}  // namespace
+
+Subcommand work_precision_command() {
+  const auto o = std::make_shared<WorkPrecisionOptions>();
+  return {
+      .name = "work-precision",
+      .title = "Error against run time of every method",
+      .footer =
+          "Every method runs with steps from its stability limit down, halved each time, and each library "
+          "with\n"
+          "tolerances from 0.1 down, until a run takes too long or is within 100 times the reference's own "
+          "error.\n"
+          "Errors are relative and mass-weighted, against a reference in closed form (linear systems) or by "
+          "GSL's\n"
+          "rk8pd at two tolerances. Where a limit is not known the ladder begins at 4/sqrt(k0). Linearized "
+          "methods\n"
+          "linearize every 8 steps; implicit Euler's conjugate gradients have the tolerances 1e-2, 1e-4 and "
+          "1e-8.\n"
+          "Choose a duration on which the motion is not chaotic: the reference then says how precise it is.\n"
+          "Cost: CPU seconds, and passes over all springs or blocks (force evaluations, assemblies, "
+          "products).\n"
+          "JSON: reference {method, error}, contestants[] {name, library, limit, runs[]}, provenance, "
+          "files.\n\n"
+          "example: springstab work-precision --grid 16x16 --pin first-row --duration 0.1 --output "
+          "precision\n"
+          "         the same with --resume after Ctrl-C or a crash",
+      .options = with_input(
+          o->input,
+          {Option("--duration", &o->duration, "time to simulate").needed().shown_as("[s]"),
+           Option("--damping", &o->damping, "own, or designed: alpha fitted to each step; errors against own")
+               .one_of({"own", "designed"})
+               .with_default(),
+           Option("--time-limit", &o->time_limit, "of one run; a contestant ends with the first above it")
+               .shown_as("[CPU s]")
+               .with_default(),
+           Option("--repetitions", &o->repetitions, "timed runs, after one that is not").with_default(),
+           Option("!--no-libraries", &o->libraries, "without SUNDIALS, GSL and Boost.odeint"),
+           Option("--output", &o->output, "folder for the runs as CSV, the figure, and the reference")
+               .shown_as("DIR"),
+           plots_option(o->plots), resume_option(o->resume)}),
+      .run = [o](const CommonOptions& common) { return run_work_precision(common, *o); }};
 }
 
 }  // namespace springstab

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analysis/errors/adaptive_integrator.h"
 #include "analysis/errors/linear_motion.h"
+#include "analysis/gsl/adaptive_integrator.h"
 #include "analysis/limits/general_damping.h"
 #include "experiments/command/output.h"
 #include "experiments/runs/measured_run.h"

@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <memory>
 
 #include "experiments/command/output.h"
+#include "experiments/command/subcommand_list.h"
 #include "experiments/studies/figure_list.h"
 #include "experiments/studies/gnuplot.h"
 #include "solvers/io/input_error.h"
@@ -18,6 +20,11 @@ namespace springstab {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct StressOptions {
+  std::string filter;  // part of a case's class or name, empty for all
+  std::string output;  // folder, empty for none
+};
 
 /// A folder of its own for the cases' files, removed at the end.
 class ScratchFolder {
@@ -112,7 +119,7 @@ Json draw_stress(const std::string& base, const CommonOptions& common, const Fig
                          gnuplot_literal(base + "_points.csv") +
                          "; summary=" + gnuplot_literal(summary(results)) + "; ";
   for (std::size_t i = 0; i < methods; ++i)
-    settings += text("method_%zu=", i) + gnuplot_literal(std::string(all_methods()[i].title)) + "; ";
+    settings += text("method_%zu=", i) + gnuplot_literal(all_methods()[i].info().title) + "; ";
   std::vector<std::string> files = draw(options.plots + "/stress.gp", settings, base);
   files.insert(files.end(), {base + ".csv", base + "_points.csv"});
   return {{"files", files}, {"holds", unexpected(results) == 0}, {"summary", summary(results)}};
@@ -128,8 +135,8 @@ std::vector<StressResult> run_catalogue(const std::string& filter, const CommonO
   for (std::size_t i = 0; i < all.size(); ++i) {
     if ((all[i].kind + ", " + all[i].name).find(filter) == std::string::npos) continue;
     std::optional<StiffestMode> k0;
-    for (const MethodInfo& method : all_methods()) {
-      results.push_back(run_stress(all[i], method.name, folder.path(), common, k0));
+    for (const Method& method : all_methods()) {
+      results.push_back(run_stress(all[i], method.name(), folder.path(), common, k0));
       progress.update(static_cast<double>(i) / static_cast<double>(all.size()));
     }
   }
@@ -151,7 +158,7 @@ void write_stress(const std::string& path, const std::vector<StressResult>& resu
   file.commit();
 }
 
-int run_stress_command(const CommonOptions& common, const StressOptions& options) {
+static int run_stress_command(const CommonOptions& common, const StressOptions& options) {
   const std::vector<StressResult> results = run_catalogue(options.filter, common);
   if (results.empty())
     throw InputError("--filter", 0, "no case's class or name contains '" + options.filter + "'");
@@ -178,5 +185,31 @@ int run_stress_command(const CommonOptions& common, const StressOptions& options
 }
 
 std::vector<Figure> stress_figures() { return {{.file = "stress", .name = "stress", .draw = draw_stress}}; }
+
+Subcommand stress_command() {
+  const auto o = std::make_shared<StressOptions>();
+  return {
+      .name = "stress",
+      .title = "Stiff, extreme and hostile cases by every method",
+      .footer =
+          "Each case is a file or several, run as `simulate` would with steps of at most a hundredth of its "
+          "duration [s].\n"
+          "Outcomes: right (within a tenth of the true motion, or bounded below a limit), diverges (above "
+          "one), "
+          "refused (the\n"
+          "input, with a reason), no step (the method has no stable one), limit (right as far as it came: "
+          "the "
+          "whole "
+          "motion\n"
+          "would take too many steps), wrong (anything else).\n"
+          "JSON: cases, runs, unexpected, outcomes, results[] {class, case, method, expectation, outcome, "
+          "as_expected,\n"
+          "detail, step, steps, error}, files. Exit status 3: an outcome is not the expected one.\n\n"
+          "example: springstab stress --filter 'mass ratio' --output results",
+      .options =
+          {Option("--filter", &o->filter, "only cases whose class or name contains this").shown_as("TEXT"),
+           Option("--output", &o->output, "folder for the table, stress.csv").shown_as("DIR")},
+      .run = [o](const CommonOptions& common) { return run_stress_command(common, *o); }};
+}
 
 }  // namespace springstab

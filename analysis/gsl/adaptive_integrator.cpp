@@ -1,10 +1,12 @@
-#include "analysis/errors/adaptive_integrator.h"
+#include "analysis/gsl/adaptive_integrator.h"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
 #include <memory>
 #include <stdexcept>
+
+#include "analysis/gsl/error_handler.h"
 
 namespace springstab {
 namespace {
@@ -42,6 +44,7 @@ using Handle = std::unique_ptr<T, Release<T, release>>;
 
 AdaptiveResult integrate_adaptively(System& system, const State<Vector>& start,
                                     const std::vector<double>& times, const AdaptiveOptions& options) {
+  use_error_statuses();
   const Eigen::Index n = system.size();
   if (!(options.tolerance > 0)) throw std::invalid_argument("the tolerance must be positive");
   Vector y(2 * n), scale(2 * n);
@@ -60,7 +63,6 @@ AdaptiveResult integrate_adaptively(System& system, const State<Vector>& start,
 
   AdaptiveResult result;
   double t = 0, h = times.empty() ? 0 : 1e-6 * times.back();
-  gsl_error_handler_t* const handler = gsl_set_error_handler_off();
   bool good = true;
   for (double end : times) {
     for (; good && t < end; ++result.steps)
@@ -69,7 +71,6 @@ AdaptiveResult integrate_adaptively(System& system, const State<Vector>& start,
     if (!good) break;
     result.at.push_back({y.head(n), y.tail(n)});
   }
-  gsl_set_error_handler(handler);
   result.finished = good;
   result.force_evaluations = problem.evaluations;
   return result;

@@ -1,0 +1,99 @@
+// What is asked of the region as a whole: its highest point, how far it reaches along the axes, and the best
+// line for Rayleigh damping.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/constants.h"
+#include "analysis/gsl/numerics.h"
+#include "analysis/regions/region_pieces.h"
+#include "analysis/regions/stability_region.h"
+
+namespace springstab {
+
+bool StabilityRegion::powers_bounded_at(double x, double y) const {
+  Eigen::Matrix2d a;
+  a << amplification_[0](x, y), amplification_[1](x, y), amplification_[2](x, y), amplification_[3](x, y);
+  const double mean = a.trace() / 2, half = (a(0, 0) - a(1, 1)) / 2;
+  const double separation = std::sqrt(std::abs(half * half + a(0, 1) * a(1, 0)));  // |λ₁ - λ₂| / 2
+  const bool double_root = separation < 1e-5;  // the apex is known to about 1e-12
+  return !double_root || (a - mean * Eigen::Matrix2d::Identity()).norm() < 1e-5;
+}
+
+RegionConstants StabilityRegion::find_constants() const {
+  RegionConstants found{-infinity, std::numeric_limits<double>::quiet_NaN(), false, 0, 0, false};
+  found.real_interval = critical_step(0, 1);
+  found.imaginary_interval = critical_step(1, 0);
+  for (const Piece& piece : all_pieces_) {
+    const StableInterval& top = piece.inner.intervals.back();
+    if (top.upper == infinity) {
+      found.y_max = infinity;
+      found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
+      break;
+    }
+    const auto [x, y] = highest_point(piece);
+    if (y > found.y_max) found.y_max = y, found.x_at_y_max = x;
+  }
+  if (std::isfinite(found.y_max)) found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
+  found.covers_quadrant = std::any_of(all_pieces_.begin(), all_pieces_.end(), [](const Piece& piece) {
+    const StableInterval& top = piece.inner.intervals.back();
+    return piece.left <= 0 && piece.right >= whole_line().back() && top.lower <= 0 && top.upper == infinity;
+  });
+  return found;
+}
+
+// The top of a piece is a smooth graph Y(X) on a condition J = 0; inside, its maximum is where J_X = 0.
+std::pair<double, double> StabilityRegion::highest_point(const Piece& piece) const {
+  constexpr int samples = 64;
+  const auto top = [&](double x) {
+    const Column c = column(x, -infinity, infinity);
+    return c.intervals.empty() ? -infinity : c.intervals.back().upper;
+  };
+  const double inset = 1e-15 * std::max(1.0, std::abs(piece.left) + std::abs(piece.right));
+  std::vector<double> xs;
+  for (int i = 0; i <= samples; ++i)
+    xs.push_back(std::clamp(cosine_point(piece.left, piece.right, std::numbers::pi * i / samples),
+                            piece.left + inset, piece.right - inset));
+  std::vector<double> ys;
+  for (double x : xs) ys.push_back(top(x));
+  const auto best = static_cast<std::size_t>(std::max_element(ys.begin(), ys.end()) - ys.begin());
+  if (best == 0 || best == samples) return {best == 0 ? piece.left : piece.right, ys[best]};
+
+  const auto bound = static_cast<std::size_t>(piece.inner.intervals.back().upper_bound);
+  const BivariatePolynomial slope = jury_[bound].numerator().derivative_x();
+  const auto steepness = [&](double x) { return slope(x, top(x)); };
+  if (steepness(xs[best - 1]) * steepness(xs[best + 1]) > 0) return {xs[best], ys[best]};
+  const double x = root_between(steepness, xs[best - 1], xs[best + 1]);
+  return {x, top(x)};
+}
+
+DampingLine StabilityRegion::damping_line(double x0) const {
+  const double apex_slope = (constants_.x_at_y_max - x0) / constants_.y_max;
+  if (apex_slope >= 0 && closed_segment_is_stable(x0, 0, constants_.x_at_y_max, constants_.y_max))
+    return {apex_slope, constants_.y_max};
+
+  const auto reach = [&](double angle) {
+    const double c = angle == 0 ? 0 : std::sin(angle), s = std::cos(angle);  // angle 0 points straight up
+    return s * first_exit({{{x0, c}}, {{0, s}}});
+  };
+  constexpr int samples = 256;
+  const double width = std::numbers::pi / 2 / samples;
+  DampingLine best{0, reach(0)};
+  double best_angle = 0;
+  for (int i = 1; i < samples; ++i)
+    if (const double y = reach(i * width); y > best.reach)
+      best = {std::tan(i * width), y}, best_angle = i * width;
+  if (best_angle == 0 || best.reach == infinity) return best;
+
+  double lower = best_angle - width, upper = best_angle + width;  // golden section: the reach may jump
+  for (int i = 0; i < 80; ++i) {
+    const double a = upper - (upper - lower) / std::numbers::phi,
+                 b = lower + (upper - lower) / std::numbers::phi;
+    const double at_a = reach(a), at_b = reach(b);
+    (at_a < at_b ? lower : upper) = at_a < at_b ? a : b;
+    if (std::max(at_a, at_b) > best.reach) best = {std::tan(at_a > at_b ? a : b), std::max(at_a, at_b)};
+  }
+  return best;
+}
+
+}  // namespace springstab

@@ -1,0 +1,54 @@
+#include "experiments/command/shared_options.h"
+
+#include <filesystem>
+#include <iterator>
+#include <system_error>
+
+#include "analysis/method.h"
+
+namespace springstab {
+
+std::string method_names() {
+  std::string names;
+  for (const Method& each : all_methods()) names += (names.empty() ? "" : ", ") + each.name();
+  return names;
+}
+
+std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
+  std::vector<Option> all{
+      Option("INPUT", &input.file, "SCENE.json, a surface .obj, or tetrahedra .msh, .veg, .vtk")
+          .shown_as("FILE"),
+      Option("--grid", &input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
+          .shown_as("NxM"),
+      Option("--spacing", &input.spacing, "distance s of the grid's particles (default 0.025)")
+          .shown_as("[m]"),
+      Option("--material", &input.material, "default, soft, stiff (springs), and for surfaces baraff-witkin")
+          .shown_as("NAME"),
+      Option("--pin", &input.pin, "none, first-row, corners or particle numbers like 0,5-9").shown_as("SPEC"),
+      Option("--stiffness", &input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
+          .shown_as("FILE"),
+      Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),
+      Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE")};
+  all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+  return all;
+}
+
+Option resume_option(bool& resume) {
+  return Option("--resume", &resume,
+                "go on where the same command was interrupted; what it had finished is in --output");
+}
+
+std::string plots_folder() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path here = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  const fs::path installed = (here / SPRINGSTAB_INSTALLED_PLOTS).lexically_normal();
+  return (fs::is_directory(installed, ignored) ? installed : here / "plots").string();
+}
+
+Option plots_option(std::string& plots) {
+  plots = plots_folder();
+  return Option("--plots", &plots, "folder of the gnuplot scripts").shown_as("DIR").with_default();
+}
+
+}  // namespace springstab

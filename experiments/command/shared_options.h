@@ -1,0 +1,28 @@
+// Options that several subcommands have.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/command/subcommand_list.h"
+#include "experiments/inputs/subject.h"
+
+namespace springstab {
+
+/// Every method's name, with commas.
+std::string method_names();
+
+/// INPUT and what belongs to it, then `more`.
+std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);
+
+/// For the commands that keep what they have finished.
+Option resume_option(bool& resume);
+
+/// Where the gnuplot scripts are: installed, as seen from the running command, else `plots` beside it, as in
+/// a build folder. Not checked.
+std::string plots_folder();
+
+/// --plots, with that folder as default.
+Option plots_option(std::string& plots);
+
+}  // namespace springstab

@@ -1,0 +1,50 @@
+// The options and the help of `springstab limits`.
+#include "experiments/limits_options.h"
+
+#include <memory>
+
+#include "experiments/command/shared_options.h"
+
+namespace springstab {
+
+Subcommand limits_command() {
+  const auto o = std::make_shared<LimitsOptions>();
+  return {
+      .name = "limits",
+      .title = "Stable steps and damping of a scene, a mesh or matrices",
+      .footer =
+          "h_max [s]: every smaller step keeps every mode bounded, with the input's own damping. certified "
+          "[s]: "
+          "proved.\n"
+          "use [s]: with the safety factor. With fitted damping: the largest step over all alpha, and that "
+          "alpha "
+          "[s].\n"
+          "JSON: h_max_source is exact (for the given k0) or estimate (from computed eigenvalues); "
+          "h_every_pose "
+          "is proved for\n"
+          "every pose of a spring scene whose K is semidefinite; transient_growth is how far √energy may "
+          "grow "
+          "before it decays,\n"
+          "at least, at the recommended step; h_certified_source says what proves, reason why nothing does; "
+          "growth_rate is how\n"
+          "fast the motion itself grows [1/s]. K and D need not be symmetric: then nothing is certified.\n"
+          "mesh says what was mended in a mesh file: a surface of springs or triangles (.obj), or a solid "
+          "of\n"
+          "tetrahedra (.msh, .veg, .vtk); its texture_map, by which factor the cloth differs from it at "
+          "most.\n"
+          "Exit status 3: the --method asked for has no stable step.\n\n"
+          "examples: springstab limits --grid 32x32 --pin first-row\n"
+          "          springstab limits skirt.obj --method symplectic-euler --json\n"
+          "          springstab limits --stiffness K.mtx --mass M.mtx",
+      .options = with_input(
+          o->input,
+          {Option("--method", &o->method, "one of " + method_names() + " (default: all)").shown_as("NAME"),
+           Option("--safety", &o->safety, "factor F >= 1 on the stiffness for the recommended step")
+               .with_default(),
+           Option("--max-step", &o->max_step, "recommended where nothing limits the step, in seconds")
+               .with_default(),
+           Option("--certify", &o->certify, "exit 3 unless every method asked for has a certified step")}),
+      .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};
+}
+
+}  // namespace springstab

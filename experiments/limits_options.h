@@ -1,0 +1,22 @@
+// What `springstab limits` is asked.
+#pragma once
+
+#include <string>
+
+#include "experiments/command/options.h"
+#include "experiments/inputs/subject.h"
+
+namespace springstab {
+
+struct LimitsOptions {
+  InputOptions input;
+  std::string method;  // empty for all
+  double safety = 1.5;
+  double max_step = 0.01;  // [s], where nothing limits the step
+  bool certify = false;
+};
+
+/// Stable steps and damping of a structure; returns an ExitStatus.
+int run_limits(const CommonOptions& common, const LimitsOptions& options);
+
+}  // namespace springstab

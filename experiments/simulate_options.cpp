@@ -1,0 +1,76 @@
+// The options and the help of `springstab simulate`.
+#include "experiments/simulate_options.h"
+
+#include <memory>
+
+#include "experiments/command/shared_options.h"
+
+namespace springstab {
+namespace {
+
+// As they are typed.
+struct TypedSimulateOptions : SimulateOptions {
+  std::string damping = "own", hessian = "exact", solver = "cg";
+};
+
+}  // namespace
+
+Subcommand simulate_command() {
+  const auto o = std::make_shared<TypedSimulateOptions>();
+  return {
+      .name = "simulate",
+      .title = "Runs a scene, a mesh or matrices",
+      .footer =
+          "The step is shortened so that a whole number of steps ends at the duration. Units are SI. "
+          "Matrices "
+          "start from a\n"
+          "random displacement of unit M-norm (--seed) at rest, without force.\n"
+          "Unless --step is given, a run that diverges goes back to its last checkpoint and on with a step "
+          "for "
+          "the stiffness\n"
+          "it has there; a linearized method then also linearizes twice as often.\n"
+          "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
+          "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
+          "--output drape\n"
+          "         the same with --resume after Ctrl-C or a crash",
+      .options = with_input(
+          o->input,
+          {Option("--method", &o->method, "one of " + method_names()).needed().shown_as("NAME"),
+           Option("--duration", &o->duration, "time to simulate").needed().shown_as("[s]"),
+           Option("--step", &o->step, "step (default: the recommended one of `limits`)").shown_as("[s]"),
+           Option("--max-step", &o->max_step, "largest step to choose (default 0.01 where nothing limits it)")
+               .shown_as("[s]"),
+           Option("--safety", &o->safety, "factor F >= 1 on the stiffness for the recommended step")
+               .with_default(),
+           Option("--relinearize", &o->relinearize, "of linearized methods: time between linearizations")
+               .shown_as("[s]")
+               .with_default(),
+           Option("--damping", &o->damping, "own, or designed: alpha fitted to the step")
+               .one_of({"own", "designed"})
+               .with_default(),
+           Option("--hessian", &o->hessian,
+                  "exact, or projected to be positive semidefinite, in implicit and linearized methods")
+               .one_of({"exact", "projected"})
+               .with_default(),
+           Option("--explain", &o->explain,
+                  "first say what the scene has, what each part costs a step, and what was left out"),
+           Option("--output", &o->output, "folder for the frames (matrices: trajectory.csv)").shown_as("DIR"),
+           Option("--format", &o->format, "of the frames: obj or vtk").one_of({"obj", "vtk"}).with_default(),
+           Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
+           Option("--solver", &o->solver,
+                  "of implicit Euler's linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")
+               .one_of({"cg", "direct"})
+               .with_default(),
+           Option("--cg-tolerance", &o->cg_tolerance,
+                  "relative residual of implicit Euler's conjugate gradients")
+               .with_default(),
+           resume_option(o->resume)}),
+      .run = [o](const CommonOptions& common) {
+        o->designed_damping = o->damping == "designed";
+        o->projected_hessian = o->hessian == "projected";
+        o->direct = o->solver == "direct";
+        return run_simulate(common, *o);
+      }};
+}
+
+}  // namespace springstab

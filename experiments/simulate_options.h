@@ -1,0 +1,34 @@
+// What `springstab simulate` is asked.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "experiments/command/options.h"
+#include "experiments/inputs/subject.h"
+
+namespace springstab {
+
+struct SimulateOptions {
+  InputOptions input;
+  std::string method;
+  double duration = 0;             // [s]
+  std::optional<double> step;      // [s]
+  std::optional<double> max_step;  // [s]
+  double safety = 1.5;
+  double relinearize = 0.01;  // h_m of the linearized methods [s]
+  bool designed_damping = false;
+  bool projected_hessian = false;
+  bool explain = false;
+  std::string output;  // folder, empty for none
+  std::string format = "obj";
+  int frames = 100;
+  double cg_tolerance = 1e-6;
+  bool direct = false;  // a factorization instead of conjugate gradients
+  bool resume = false;
+};
+
+/// Runs a scene or a system of matrices; returns an ExitStatus.
+int run_simulate(const CommonOptions& common, const SimulateOptions& options);
+
+}  // namespace springstab

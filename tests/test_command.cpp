@@ -686,4 +686,24 @@ BOOST_AUTO_TEST_CASE(work_precision_reports_errors_costs_and_what_the_reference_
   BOOST_TEST((*this)("work-precision '" + scene.string() + "' --duration 1").status == 2);
 }
 
+// k = 1 and d = 10: the fast mode limits explicit Euler, and stiffening slows it down.
+BOOST_AUTO_TEST_CASE(where_damping_dominates_there_is_a_margin_too) {
+  const Command springstab;
+  const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 ";
+  springstab.file("K.mtx", head + "1\n");
+  springstab.file("D.mtx", head + "10\n");
+  const Outcome outcome = springstab("limits --stiffness K.mtx --damping-matrix D.mtx --json");
+  const auto list = outcome.json()["methods"];
+  const double slow = 5 - std::sqrt(24.0), fast = 5 + std::sqrt(24.0);  // rates of the two motions
+  const auto euler = by_name(list, "explicit-euler");
+  BOOST_TEST(close(euler["h_max"], 2 / fast));
+  BOOST_TEST(slow * fast == 1, boost::test_tools::tolerance(1e-12));
+  for (const auto& method : list) {
+    if (method["status"] != "limited") continue;
+    const double step = method["recommended_step"];
+    BOOST_TEST(step <= method["h_max"].get<double>() / std::sqrt(1.5) * (1 + 1e-12), method["name"]);
+    BOOST_TEST(step <= method["h_certified"].get<double>(), method["name"]);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

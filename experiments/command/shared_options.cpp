@@ -29,6 +29,7 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
           .shown_as("FILE"),
       Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),
       Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE"),
+      Option("--rayleigh", &input.rayleigh, "of matrices: adds d0 M + alpha K to D").shown_as("d0,alpha"),
       Option("--sum-duplicates", &input.sum_duplicates,
              "add up entries of a matrix file that have one position")};
   all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));

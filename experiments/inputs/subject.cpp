@@ -8,6 +8,7 @@
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/io/mesh_file.h"
+#include "solvers/io/text_file.h"
 #include "solvers/scene/every_pose.h"
 
 namespace springstab {
@@ -68,6 +69,17 @@ auto naming(const std::string& source, Build build) {
   }
 }
 
+// "d0,alpha": rates of damping [1/s] and times [s], not negative.
+RayleighDamping parse_rayleigh(const std::string& words) {
+  const Location at{"--rayleigh", 0};
+  const std::size_t comma = words.find(',');
+  if (comma == std::string::npos) at.fail(quoted(words) + " has no comma, expected d0,alpha like 0.5,1e-4");
+  const RayleighDamping damping{at.real(words.substr(0, comma)), at.real(words.substr(comma + 1))};
+  if (damping.d0 < 0 || damping.alpha < 0)
+    at.fail(quoted(words) + " is negative, expected d0 and alpha from 0");
+  return damping;
+}
+
 // At rest but for `stretch` and `velocity`.
 State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
   State<Vector> state = scene.rest_state();
@@ -89,8 +101,10 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
                      std::string(given == 0 ? "nothing was given" : "more than one was given") +
                          ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
   if (options.stiffness.empty()) {
-    if (!options.mass.empty() || !options.damping_matrix.empty() || options.sum_duplicates)
-      throw InputError("input", 0, "--mass, --damping-matrix and --sum-duplicates go with --stiffness");
+    if (!options.mass.empty() || !options.damping_matrix.empty() || !options.rayleigh.empty() ||
+        options.sum_duplicates)
+      throw InputError("input", 0,
+                       "--mass, --damping-matrix, --rayleigh and --sum-duplicates go with --stiffness");
     build_scene(describe(options));
   } else {
     build_matrices(options, any_matrices);
@@ -105,12 +119,13 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
   };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
+  const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix})
     if (!file->empty()) files += ", " + *file;
   Model::operator=(naming(files, [&] {
     const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
-    return Model(std::make_unique<MatrixSystem>(make(k, m, d)));
+    return Model(std::make_unique<MatrixSystem>(make(k, m, d, rayleigh)));
   }));
 }
 

@@ -20,6 +20,7 @@ struct InputOptions {
   std::string material, pin;      // with grid or a mesh
   std::string stiffness, mass, damping_matrix;
   bool sum_duplicates = false;  // of these matrices' entries
+  std::string rayleigh;         // "d0,alpha": damping of matrices beside D
 };
 
 /// A model, and where it came from.

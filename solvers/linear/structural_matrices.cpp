@@ -144,7 +144,7 @@ void condense(StructuralMatrices& s) {
 
 // Of K and D only symmetric ones are accepted, unless they may be `any`.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                           const SparseMatrix& damping, bool any) {
+                           const SparseMatrix& damping, const RayleighDamping& more, bool any) {
   const Eigen::Index n = stiffness.rows();
   if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
   StructuralMatrices s;
@@ -156,6 +156,10 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
     s.mass.setIdentity();
   }
   if (damping.size() > 0) s.damping = checked(damping, "damping", n, any ? &s.symmetric : nullptr);
+  if (more.d0 != 0 || more.alpha != 0) {
+    const SparseMatrix added = more.d0 * s.mass + more.alpha * s.stiffness;
+    s.damping = s.damping.size() > 0 ? SparseMatrix(s.damping + added) : added;
+  }
   for (Eigen::Index i = 0; i < n; ++i)
     if (s.mass.coeff(i, i) < 0) {
       std::ostringstream message;
@@ -190,13 +194,13 @@ bool is_diagonal(const SparseMatrix& a) {
 }
 
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                           const SparseMatrix& damping) {
-  return prepare(stiffness, mass, damping, false);
+                           const SparseMatrix& damping, const RayleighDamping& more) {
+  return prepare(stiffness, mass, damping, more, false);
 }
 
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                                        const SparseMatrix& damping) {
-  return prepare(stiffness, mass, damping, true);
+                                        const SparseMatrix& damping, const RayleighDamping& more) {
+  return prepare(stiffness, mass, damping, more, true);
 }
 
 }  // namespace springstab

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+
 #include <span>
+#include "solvers/linear/rayleigh_damping.h"
 
 namespace springstab {
 
@@ -26,12 +28,12 @@ struct StructuralMatrices {
 /// do. An empty M stands for the unit matrix. Throws std::invalid_argument that names the matrix and the
 /// rule.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
-                           const SparseMatrix& damping = {});
+                           const SparseMatrix& damping = {}, const RayleighDamping& more = {});
 
 /// The same for any K and D, as of follower forces and rotors; where one is not symmetric it stays so, and
 /// every unknown needs mass.
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
-                                        const SparseMatrix& damping = {});
+                                        const SparseMatrix& damping = {}, const RayleighDamping& more = {});
 
 /// M of particles with three unknowns each: diagonal; one mass per particle [kg].
 SparseMatrix lumped_mass(std::span<const double> mass);

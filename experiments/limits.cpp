@@ -140,9 +140,11 @@ std::string cell(const std::optional<double>& h) { return h ? text("%.6g", *h) :
 void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping, double safety) {
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
   if (s.condensed > 0)
-    std::cout << text(" (after eliminating %ld without mass)", static_cast<long>(s.condensed));
+    std::cout << text(" (after eliminating %ld without mass", static_cast<long>(s.condensed))
+              << (s.condensed_rate > 0 ? text(", whose own motion decays at %.6g 1/s)", s.condensed_rate)
+                                       : ")");
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
-  std::cout << (k0.value < 0 ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
+  std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
   if (k0.indefinite)
     std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";
@@ -195,6 +197,7 @@ Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety
   for (const Row& row : rows) list.push_back(limits_json(row.method, row.limits, damping.d0));
   return {{"degrees_of_freedom", matrices.size()},
           {"condensed", matrices.condensed},
+          {"condensed_rate", matrices.condensed_rate > 0 ? number(matrices.condensed_rate) : Json()},
           {"k0", k0_json(answer.k0())},
           {"stiffness_indefinite", answer.k0().indefinite},
           {"symmetric", matrices.symmetric},
@@ -216,8 +219,11 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety)
   print(matrices, k0, damping, safety);
   for (const Row& row : rows) print(row.method, row.limits);
   if (!matrices.symmetric)
-    std::cout
-        << "\nK or D is not symmetric: these limits are estimates, from all eigenvalues of the motion\n";
+    std::cout << (answer.growth() ? "\nK or D is not symmetric: these limits are estimates, from all "
+                                    "eigenvalues of the motion\n"
+                                  : "\nK or D is not symmetric, and not all eigenvalues of the motion were "
+                                    "computed: no limit is "
+                                    "known\n");
   if (const double rate = answer.growth().value_or(0); rate > 0)
     std::cout << text(
         "\nthe motion itself grows, by e in %.4g s (Re μ = %.6g 1/s), whatever the method; limits are "

@@ -686,4 +686,51 @@ BOOST_AUTO_TEST_CASE(work_precision_reports_errors_costs_and_what_the_reference_
   BOOST_TEST((*this)("work-precision '" + scene.string() + "' --duration 1").status == 2);
 }
 
+// k = 1 and d = 10: the fast mode limits explicit Euler, and stiffening slows it down.
+BOOST_AUTO_TEST_CASE(where_damping_dominates_there_is_a_margin_too) {
+  const Command springstab;
+  const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 ";
+  springstab.file("K.mtx", head + "1\n");
+  springstab.file("D.mtx", head + "10\n");
+  const Outcome outcome = springstab("limits --stiffness K.mtx --damping-matrix D.mtx --json");
+  const auto list = outcome.json()["methods"];
+  const double slow = 5 - std::sqrt(24.0), fast = 5 + std::sqrt(24.0);  // rates of the two motions
+  const auto euler = by_name(list, "explicit-euler");
+  BOOST_TEST(close(euler["h_max"], 2 / fast));
+  BOOST_TEST(slow * fast == 1, boost::test_tools::tolerance(1e-12));
+  for (const auto& method : list) {
+    if (method["status"] != "limited") continue;
+    const double step = method["recommended_step"];
+    BOOST_TEST(step <= method["h_max"].get<double>() / std::sqrt(1.5) * (1 + 1e-12), method["name"]);
+    BOOST_TEST(step <= method["h_certified"].get<double>(), method["name"]);
+  }
+}
+
+// A chain with a massless end: D = 0.2 M + 0.01 K damps the end by its stiffness alone.
+BOOST_AUTO_TEST_CASE(rayleigh_damping_of_matrices_is_that_of_a_matrix) {
+  const Command springstab;
+  const std::string head = "%%MatrixMarket matrix coordinate real symmetric\n3 3 ";
+  springstab.file("K.mtx", head + "5\n1 1 2\n2 1 -1\n2 2 2\n3 2 -1\n3 3 1\n");
+  springstab.file("M.mtx", head + "2\n1 1 1\n2 2 2\n");
+  springstab.file("D.mtx", head + "5\n1 1 0.22\n2 1 -0.01\n2 2 0.42\n3 2 -0.01\n3 3 0.01\n");
+  const Json given = springstab("limits --stiffness K.mtx --mass M.mtx --rayleigh 0.2,1e-2 --json").json();
+  const Json same = springstab("limits --stiffness K.mtx --mass M.mtx --damping-matrix D.mtx --json").json();
+  BOOST_TEST(given["condensed"] == 1);
+  BOOST_TEST(close(given["condensed_rate"], 100));
+  BOOST_TEST(given["damping"]["kind"] == "rayleigh");
+  BOOST_TEST(close(given["damping"]["d0"], 0.2));
+  for (const char* method : {"rk4", "explicit-euler", "symplectic-euler"})
+    BOOST_TEST(close(by_name(given["methods"], method)["h_max"],
+                     by_name(same["methods"], method)["h_max"].get<double>()));
+  const Json twice =
+      springstab("limits --stiffness K.mtx --mass M.mtx --damping-matrix D.mtx --rayleigh 0.2,0.01 --json")
+          .json();
+  BOOST_TEST(close(twice["damping"]["alpha"], 0.02));
+  for (const std::string bad : {"0.2", "1,x", "-1,0", "1,-2", "1,2,3", ",", "nan,0", "0x1,0"}) {
+    const Outcome refused = springstab("limits --stiffness K.mtx --rayleigh " + bad);
+    BOOST_TEST(refused.status == 2);
+    BOOST_TEST(refused.err.find("--rayleigh") != std::string::npos, refused.err);
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

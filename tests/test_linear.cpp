@@ -1,8 +1,10 @@
 // The linear systems: their products and solves are those of the dense matrices that they stand for, and
 // matrices that no structure has are refused by name.
+#include <Eigen/SVD>
 #include <algorithm>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <complex>
 #include <functional>
 #include <limits>
 #include <random>
@@ -11,6 +13,7 @@
 #include <vector>
 
 #include "analysis/method.h"
+#include "analysis/spectra/generator_spectrum.h"
 #include "solvers/linear/block_linear_system.h"
 #include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/matrix_system.h"
@@ -593,6 +596,33 @@ BOOST_AUTO_TEST_CASE(condensation_keeps_the_damping_of_what_has_mass) {
   wrong = d;
   wrong(0, 1) = wrong(1, 0) = 1;
   expect_refused([&] { prepare(sparse(k), sparse(m), sparse(wrong)); }, "unknown 2 has damping but no mass");
+}
+
+// With D = alpha K in the massless rows the finite eigenvalues of μ² M + μ D + K are those of the condensed
+// matrices and, once for each massless unknown, -1/alpha: by the linearized pencil, whose massless velocities
+// leave infinite ones.
+BOOST_AUTO_TEST_CASE(massless_unknowns_damped_like_their_stiffness_are_condensed) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) BOOST_TEST_CONTEXT("seed " << seed) {
+      Random random(seed);
+      const int n = 4 + random.index(5), massless = 1 + random.index(2);
+      const double alpha = std::pow(10, random(-2, 0));
+      const Dense k = random.definite(n);
+      Dense m = Dense::Zero(n, n), d = alpha * k;
+      for (int i = massless; i < n; ++i) m(i, i) = 1 + random.index(3);
+      d.bottomRightCorner(n - massless, n - massless) += random.definite(n - massless);
+      const StructuralMatrices s = prepare(sparse(k), sparse(m), sparse(d));
+      BOOST_TEST(s.condensed == massless);
+      BOOST_TEST(s.condensed_rate == 1 / alpha, boost::test_tools::tolerance(1e-12));
+      for (const std::complex<double> mu : generator_spectrum(s).value()) {
+        const Eigen::MatrixXcd pencil = mu * mu * m + mu * d + k.cast<std::complex<double>>();
+        const auto sizes = Eigen::JacobiSVD<Eigen::MatrixXcd>(pencil).singularValues();
+        BOOST_TEST(sizes.tail<1>()[0] <= 1e-9 * sizes[0], mu);
+      }
+      Dense other = d;
+      other(0, 0) *= 1.001;
+      expect_refused([&] { prepare(sparse(k), sparse(m), sparse(other)); },
+                     "has damping but no mass, expected D = alpha K");
+    }
 }
 
 // Massless unknowns that nothing holds: with a K_bb that is singular but for rounding, K_bb⁻¹ would be noise.

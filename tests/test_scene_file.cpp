@@ -116,9 +116,9 @@ BOOST_AUTO_TEST_CASE(a_name_picks_the_material_and_other_keys_override_it) {
   check_equal(springs(read(with("\"material\": \"soft\""))).stiffness, {20, 10, 2});
   const SpringMaterial material = springs(read(with("\"material\": {\"shear\": 5, \"name\": \"stiff\"}")));
   check_equal(material.stiffness, {20000, 5, 200});
-  check_equal(std::get<SpringMaterial>(named_material("default", Grid{}, "", 0)).stiffness,
+  check_equal(std::get<SpringMaterial>(named_material("default", false, "", 0)).stiffness,
               SpringMaterial{}.stiffness);
-  expect_error([] { named_material("sotf", Grid{}, "--material", 0); }, "--material", "did you mean 'soft'?");
+  expect_error([] { named_material("sotf", false, "--material", 0); }, "--material", "did you mean 'soft'?");
 }
 
 BOOST_AUTO_TEST_CASE(pins_are_words_indices_or_ranges) {

@@ -980,4 +980,35 @@ BOOST_AUTO_TEST_CASE(a_step_that_fails_inside_the_transition_matrix_is_an_error)
   BOOST_CHECK_THROW(dominant_eigenvalues(a, 1), std::runtime_error);
 }
 
+// A ring of m blocks of b unknowns: each row has 1/b in its own block and in the next. Its eigenvalues are
+// 1 + exp(2πij/m) and zeros, so the largest is 2 and its neighbours come within 1e-3 of it.
+BOOST_AUTO_TEST_CASE(a_neighbour_of_the_largest_eigenvalue_is_not_taken_for_it) {
+  for (const auto& [m, b] : {std::pair{64, 7}, {60, 8}, {90, 5}}) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < m; ++i)
+      for (const int j : {i, (i + 1) % m})
+        for (int p = 0; p < b; ++p)
+          for (int q = 0; q < b; ++q) entries.emplace_back(i * b + p, j * b + q, 1.0 / b);
+    SparseMatrix k(m * b, m * b);
+    k.setFromTriplets(entries.begin(), entries.end());
+    const StructuralMatrices s = prepare_nonsymmetric(k);
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+      const StiffestMode mode = estimated_stiffest_mode(s, {.seed = seed});
+      BOOST_TEST((!mode.converged || std::abs(mode.value - 2) < 1e-8), m << ", " << b << ", " << seed);
+      BOOST_TEST(mode.converged);
+    }
+  }
+}
+
+// Entries of 2^63 that cancel leave a residual of the size of what they leave.
+BOOST_AUTO_TEST_CASE(a_residual_as_large_as_the_value_is_no_convergence) {
+  const double big = std::ldexp(1.0, 63);
+  SparseMatrix k(3, 3);
+  for (const auto& [i, j, value] : std::vector<std::tuple<int, int, double>>{
+           {0, 0, big}, {0, 1, big}, {1, 0, -big}, {1, 1, -big}, {0, 2, big / 3}, {2, 2, 1}, {2, 0, 0.1}})
+    k.insert(i, j) = value;
+  const StiffestMode mode = estimated_stiffest_mode(prepare_nonsymmetric(k));
+  BOOST_TEST((!mode.converged || mode.residual <= 1e-6 * mode.value));
+}
+
 BOOST_AUTO_TEST_SUITE_END()

@@ -15,7 +15,7 @@
 #include "analysis/method.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/io/input_error.h"
-#include "solvers/io/tet_file.h"
+#include "solvers/io/mesh_file.h"
 #include "solvers/linear/dense_solvers.h"
 #include "solvers/scene/mesh_repair.h"
 #include "solvers/scene/scene.h"
@@ -463,7 +463,7 @@ BOOST_AUTO_TEST_CASE(k0_is_that_of_a_dense_eigen_solver) {
                                                       {"bar", bar(random, 8)}};
   for (const std::string name : {"sofa_truss_tetra.msh", "vega_beam3_tet.veg"})
     if (const auto path = test::shared_data("meshes/" + name))
-      meshes.emplace_back(name, read_tets(path->string()));
+      meshes.emplace_back(name, std::get<TetMesh>(read_mesh(path->string())));
   for (const auto& [name, mesh] : meshes) BOOST_TEST_CONTEXT(name) {
       const TetSolid solid = make_solid(repaired(mesh).mesh, {});
       Scene scene(solid, {}, {0, 0, 0}, {});

@@ -13,10 +13,12 @@ inline std::string replaced(std::string text, const std::string& what, const std
   return text.replace(at, what.size(), by);
 }
 
-inline std::string with_crlf(const std::string& text) {
-  std::string crlf;
-  for (const char c : text) crlf += c == '\n' ? "\r\n" : std::string(1, c);
-  return crlf;
+inline std::string with_line_ends(const std::string& text, const std::string& end) {
+  std::string changed;
+  for (const char c : text) changed += c == '\n' ? end : std::string(1, c);
+  return changed;
 }
+
+inline std::string with_crlf(const std::string& text) { return with_line_ends(text, "\r\n"); }
 
 }  // namespace springstab::test

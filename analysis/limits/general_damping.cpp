@@ -87,8 +87,10 @@ MethodLimits GeneralDamping::limits(const Method& method) {
   const StabilityRegion& region = stability_region(method);
   for (const auto& [other, limits] : known_)
     if (region.same_conditions(*other)) return limits;
-  known_.emplace_back(&region, compute(method));
-  return known_.back().second;
+  MethodLimits limits = compute(method);
+  keep_margin(safety_, limits);
+  known_.emplace_back(&region, limits);
+  return limits;
 }
 
 MethodLimits GeneralDamping::compute(const Method& method) {

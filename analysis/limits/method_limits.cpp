@@ -16,6 +16,13 @@ LimitStatus status_of(double h) {
 
 }  // namespace
 
+void keep_margin(double safety, MethodLimits& limits) {
+  if (!limits.recommended) return;
+  double& step = *limits.recommended;
+  if (limits.h_max) step = std::min(step, *limits.h_max / std::sqrt(safety));
+  if (limits.h_certified) step = std::min(step, *limits.h_certified);
+}
+
 MethodLimits method_limits(const Method& method, const StiffestMode& k0, const DampingModel& damping,
                            double safety) {
   const StabilityRegion& region = stability_region(method);
@@ -58,6 +65,7 @@ MethodLimits method_limits(const Method& method, const StiffestMode& k0, const D
     prove([&](double k) { return design_damping(region, k, damping.d0).h_max; });
     if (limits.status == LimitStatus::limited)
       limits.recommended = positive(design_damping(region, safety * k_max, damping.d0).h_max);
+    keep_margin(safety, limits);
     return limits;
   }
 
@@ -69,6 +77,7 @@ MethodLimits method_limits(const Method& method, const StiffestMode& k0, const D
   if (limits.status == LimitStatus::limited)
     limits.recommended = positive(recommended_step(region, modes, safety));
   prove([&](double k) { return critical_step(region, {0, k, damping.d0, damping.alpha}); });
+  keep_margin(safety, limits);
   return limits;
 }
 

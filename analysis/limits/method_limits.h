@@ -40,12 +40,15 @@ struct MethodLimits {
   std::optional<double> h_certified;  // proved stable, at most h_max
   Proof proof = Proof::none;          // of h_certified
   std::string_view unproved{};        // why there is none, in lasting words
-  std::optional<double> recommended;  // with the safety factor; absent also where unlimited
+  std::optional<double> recommended;  // with the safety factor; at most h_certified; absent where unlimited
   std::optional<DampingDesign> designed;
   // of StructureLimits alone (structure_limits.h):
   std::optional<double> every_pose;        // proved stable below it in whatever pose
   std::optional<double> transient_growth;  // a lower bound of the largest ‖Aⁿ‖ at the recommended step
 };
+
+/// Takes the step to use down to h_max/√F, the limit when time runs √F times faster, and to what is proved.
+void keep_margin(double safety, MethodLimits& limits);
 
 /// Without damping or with Rayleigh damping these are exact for the given k0. With general damping a method
 /// that is stable on the whole quadrant X, Y > 0 is unlimited (every eigenpair has a d >= 0 and a k >= 0);

@@ -84,7 +84,8 @@ double recommended_step(const StabilityRegion& region, const RayleighModes& mode
   RayleighModes stiffer{safety * modes.k_min, safety * modes.k_max, modes.d0, modes.alpha / safety};
   const double damping_fixed = critical_step(region, stiffer);
   stiffer.alpha = modes.alpha;
-  return std::min({critical_step(region, modes), damping_fixed, critical_step(region, stiffer)});
+  const double limit = critical_step(region, modes);
+  return std::min({limit, damping_fixed, critical_step(region, stiffer), limit / std::sqrt(safety)});
 }
 
 // recommended_step falls as the factor grows.

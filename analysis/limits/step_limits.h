@@ -33,9 +33,10 @@ DampingDesign design_damping(const StabilityRegion& region, double k_max, double
 /// The alpha that belongs to a given step: the line that reaches the largest Y from (h d0, 0).
 double designed_alpha(const StabilityRegion& region, double h, double d0);
 
-/// The limit with a safety factor F on the stiffness: the smallest of the limits for K, for F·K with D fixed
-/// and for F·K with alpha fixed. (More stiffness can raise an overdamped limit, so F·K alone is not safe, and
-/// with fixed damping neither is h/√F.)
+/// The limit with a safety factor F on the stiffness: the smallest of the limits for K, for F·K with D fixed,
+/// for F·K with alpha fixed, and of the limit for F·K with √F·D, which is that for K over √F: time runs
+/// faster. (More stiffness can raise an overdamped limit, so F·K alone is not safe, and with fixed damping
+/// neither is h/√F.)
 double recommended_step(const StabilityRegion& region, const RayleighModes& modes, double safety);
 
 /// The least safety factor in [1, most], to 1e-4, whose recommended step is at most h; nothing where there is

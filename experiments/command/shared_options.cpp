@@ -16,7 +16,7 @@ std::string method_names() {
 
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
   std::vector<Option> all{
-      Option("INPUT", &input.file, "SCENE.json, a surface .obj, or tetrahedra .msh, .veg, .vtk")
+      Option("INPUT", &input.file, "SCENE.json, a surface .obj, tetrahedra .veg, or either .msh, .vtk")
           .shown_as("FILE"),
       Option("--grid", &input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
           .shown_as("NxM"),
@@ -28,7 +28,10 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
       Option("--stiffness", &input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
           .shown_as("FILE"),
       Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),
-      Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE")};
+      Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE"),
+      Option("--rayleigh", &input.rayleigh, "of matrices: adds d0 M + alpha K to D").shown_as("d0,alpha"),
+      Option("--sum-duplicates", &input.sum_duplicates,
+             "add up entries of a matrix file that have one position")};
   all.insert(all.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
   return all;
 }

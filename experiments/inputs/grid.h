@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiments/inputs/mesh_file.h"
+#include "experiments/inputs/mesh_input.h"
 #include "solvers/scene/spring_cloth.h"
 
 namespace springstab {

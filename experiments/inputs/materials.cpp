@@ -5,7 +5,7 @@
 
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
-#include "solvers/io/tet_file.h"
+#include "solvers/io/mesh_file.h"
 #include "solvers/io/text_file.h"
 
 namespace springstab {
@@ -46,12 +46,11 @@ std::string expected_one_of(const std::string& word, const std::vector<std::stri
 
 bool is_solid(const Geometry& geometry) {
   const std::string* file = std::get_if<std::string>(&geometry);
-  return file && is_tet_file(*file);
+  return file && holds_tetrahedra(*file);
 }
 
-Material named_material(const std::string& name, const Geometry& geometry, const std::string& source,
-                        long line) {
-  if (is_solid(geometry)) {
+Material named_material(const std::string& name, bool solid, const std::string& source, long line) {
+  if (solid) {
     if (name == "default") return SolidMaterial{};
     if (name == "soft") return SolidMaterial{.stiffness = {100, 100}};
     if (name == "stiff") return SolidMaterial{.stiffness = {1e5, 1e5}};

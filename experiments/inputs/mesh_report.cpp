@@ -72,6 +72,7 @@ void print_mesh_notes(const Subject& subject) {
   if (!subject.mesh_file()) return;
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;
+  for (const FileNote& n : file.notes) say("note", file.path + ':' + std::to_string(n.line), n.text);
   const std::string one = file.solid ? "tetrahedron" : "face", many = file.solid ? "tetrahedra" : "faces";
   Counted mended;
   mended.add(r.merged_vertices, "merged ", "duplicate vertex", "duplicate vertices");

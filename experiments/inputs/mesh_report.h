@@ -6,9 +6,9 @@
 
 namespace springstab {
 
-/// A line on stderr for what was mended, one for what is unusual, one for a texture map that strains the
-/// cloth or cannot be used, one for a texture_unit without a map; nothing for a mesh without these, for grids
-/// without that unit and for matrices.
+/// A line on stderr for each thing that its reader left out, one for what was mended, one for what is
+/// unusual, one for a texture map that strains the cloth or cannot be used, one for a texture_unit without a
+/// map; nothing for a mesh without these, for grids without that unit and for matrices.
 void print_mesh_notes(const Subject& subject);
 
 /// The same with every count; null for grids and matrices.

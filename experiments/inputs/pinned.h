@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "experiments/inputs/mesh_file.h"
+#include "experiments/inputs/mesh_input.h"
 #include "experiments/inputs/scene_description.h"
 
 namespace springstab {

@@ -64,21 +64,20 @@ std::vector<Range> merged(std::vector<Range> ranges);
 /// "none", "first-row", "corners" or "0,5-9". Throws InputError(source, line, ...) for anything else.
 Pins parse_pins(const std::string& text, const std::string& source, long line);
 
-/// Whether the geometry is a file of tetrahedra, by its name.
+/// Whether the geometry is a file of tetrahedra (holds_tetrahedra of solvers/io/mesh_file.h).
 bool is_solid(const Geometry& geometry);
 
-/// The materials known by name, for a geometry of tetrahedra those of its kind. Throws
-/// InputError(source, line, ...) naming the nearest known one.
-Material named_material(const std::string& name, const Geometry& geometry, const std::string& source,
-                        long line);
+/// The materials known by name, of a solid or of a surface. Throws InputError(source, line, ...) naming the
+/// nearest known one.
+Material named_material(const std::string& name, bool solid, const std::string& source, long line);
 
 /// The half of a message about an unknown word that says what was expected:
 /// "expected 'soft' or 'stiff' (did you mean 'soft'?)", the nearest word only if it is near.
 std::string expected_one_of(const std::string& word, const std::vector<std::string_view>& known);
 
 /// Parses a scene (JSON; the schema stands in the README). Paths in it are relative to the file `source`;
-/// they are not opened. Throws InputError with the line for syntax errors, unknown, duplicate or missing
-/// keys, wrong types, values out of range.
+/// only .msh and .vtk are opened, to see whether they hold a solid. Throws InputError with the line for
+/// syntax errors, unknown, duplicate or missing keys, wrong types, values out of range.
 SceneDescription parse_scene(const std::string& source, std::string_view text);
 
 /// The same of a file.

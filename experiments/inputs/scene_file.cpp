@@ -24,8 +24,9 @@ class SceneReader {
            "'geometry' is missing, expected {\"grid\": [rows, columns]} or {\"mesh\": \"cloth.obj\"}");
     scene.geometry = geometry(*geometry_json);
     const JsonValue* material_json = find(json, "material");
-    scene.material = material_json ? material(*material_json, scene.geometry)
-                                   : named_material("default", scene.geometry, source_, json.line);
+    const bool solid = is_solid(scene.geometry);
+    scene.material = material_json ? material(*material_json, solid)
+                                   : named_material("default", solid, source_, json.line);
     scene.pins.source = source_;
     if (const JsonValue* value = find(json, "pins")) scene.pins = pins(*value);
     if (const JsonValue* value = find(json, "gravity")) scene.gravity = vector(*value);
@@ -136,16 +137,15 @@ class SceneReader {
     return json.text;
   }
 
-  Material material(const JsonValue& json, const Geometry& geometry) const {
-    if (json.kind == JsonValue::Kind::string) return named_material(json.text, geometry, source_, json.line);
+  Material material(const JsonValue& json, bool solid) const {
+    if (json.kind == JsonValue::Kind::string) return named_material(json.text, solid, source_, json.line);
     if (json.kind != JsonValue::Kind::object) wrong(json, "the name of a material or an object");
-    Material start = named_material("default", geometry, source_, json.line);
+    Material start = named_material("default", solid, source_, json.line);
     if (const JsonValue* model = find(json, "model")) {
       const std::vector<std::string_view> known =
-          is_solid(geometry) ? std::vector<std::string_view>{"tetrahedra"}
-                             : std::vector<std::string_view>{"springs", "baraff-witkin"};
-      const std::string expected =
-          is_solid(geometry) ? "'tetrahedra' for such a mesh" : "'springs' or 'baraff-witkin'";
+          solid ? std::vector<std::string_view>{"tetrahedra"}
+                : std::vector<std::string_view>{"springs", "baraff-witkin"};
+      const std::string expected = solid ? "'tetrahedra' for such a mesh" : "'springs' or 'baraff-witkin'";
       const std::string name = text(*model, expected);
       if (std::find(known.begin(), known.end(), name) == known.end())
         wrong(*model, expected_one_of(name, known).substr(std::string("expected ").size()));
@@ -153,7 +153,7 @@ class SceneReader {
     }
     if (const JsonValue* name = find(json, "name")) {
       const std::size_t model = start.index();
-      start = named_material(text(*name, "the name of a material"), geometry, source_, name->line);
+      start = named_material(text(*name, "the name of a material"), solid, source_, name->line);
       if (find(json, "model") && start.index() != model) wrong(*name, "the name of a material of that model");
     }
     return std::visit([&](auto material) -> Material { return read_material(json, material); }, start);

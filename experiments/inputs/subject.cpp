@@ -1,14 +1,14 @@
 #include "experiments/inputs/subject.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <type_traits>
 
 #include "experiments/inputs/grid.h"
 #include "experiments/inputs/pinned.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
-#include "solvers/io/tet_file.h"
+#include "solvers/io/mesh_file.h"
+#include "solvers/io/text_file.h"
 #include "solvers/scene/every_pose.h"
 
 namespace springstab {
@@ -37,7 +37,7 @@ SceneDescription describe(const InputOptions& options) {
     description.geometry = grid;
   }
   description.material = named_material(options.material.empty() ? "default" : options.material,
-                                        description.geometry, "--material", 0);
+                                        is_solid(description.geometry), "--material", 0);
   if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
   return description;
 }
@@ -69,6 +69,17 @@ auto naming(const std::string& source, Build build) {
   }
 }
 
+// "d0,alpha": rates of damping [1/s] and times [s], not negative.
+RayleighDamping parse_rayleigh(const std::string& words) {
+  const Location at{"--rayleigh", 0};
+  const std::size_t comma = words.find(',');
+  if (comma == std::string::npos) at.fail(quoted(words) + " has no comma, expected d0,alpha like 0.5,1e-4");
+  const RayleighDamping damping{at.real(words.substr(0, comma)), at.real(words.substr(comma + 1))};
+  if (damping.d0 < 0 || damping.alpha < 0)
+    at.fail(quoted(words) + " is negative, expected d0 and alpha from 0");
+  return damping;
+}
+
 // At rest but for `stretch` and `velocity`.
 State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
   State<Vector> state = scene.rest_state();
@@ -90,8 +101,10 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
                      std::string(given == 0 ? "nothing was given" : "more than one was given") +
                          ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
   if (options.stiffness.empty()) {
-    if (!options.mass.empty() || !options.damping_matrix.empty())
-      throw InputError("input", 0, "--mass and --damping-matrix go with --stiffness");
+    if (!options.mass.empty() || !options.damping_matrix.empty() || !options.rayleigh.empty() ||
+        options.sum_duplicates)
+      throw InputError("input", 0,
+                       "--mass, --damping-matrix, --rayleigh and --sum-duplicates go with --stiffness");
     build_scene(describe(options));
   } else {
     build_matrices(options, any_matrices);
@@ -101,14 +114,18 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
 void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   if (options.spacing || !options.material.empty() || !options.pin.empty())
     throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
-  const auto read = [](const std::string& path) { return path.empty() ? SparseMatrix() : read_matrix(path); };
+  const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
+  const auto read = [&](const std::string& path) {
+    return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
+  };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
+  const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix})
     if (!file->empty()) files += ", " + *file;
   Model::operator=(naming(files, [&] {
     const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
-    return Model(std::make_unique<MatrixSystem>(make(k, m, d)));
+    return Model(std::make_unique<MatrixSystem>(make(k, m, d, rayleigh)));
   }));
 }
 
@@ -127,20 +144,16 @@ void Subject::build_scene(const SceneDescription& description) {
   const auto place_mesh = [&](const auto& cloth) {
     place(cloth, description, pinned_particles(description.pins, *mesh_file_), path);
   };
-  if (is_tet_file(path)) {
+  AnyMesh mesh = read_mesh(path);
+  if (auto* tets = std::get_if<TetMesh>(&mesh)) {
     const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
     if (!material) throw InputError(path, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
-    SolidInput input = read_solid(path);
+    SolidInput input = solid_input(std::move(*tets));
     mesh_file_ = std::move(input.file);
     faces_ = std::move(input.faces);
     return place_mesh(make_solid(input.mesh, *material));
   }
-  if (!ends_with(path, ".obj") && std::filesystem::path(path).has_extension())  // a pipe has none
-    throw InputError(
-        path, 0,
-        "is of no known kind, expected a suffix: .json for a scene, .obj for a surface, .msh, .veg "
-        "or .vtk for tetrahedra");
-  SurfaceInput input = read_surface(path);
+  SurfaceInput input = surface_input(std::move(std::get<Mesh>(mesh)));
   mesh_file_ = std::move(input.file);
   faces_ = std::move(input.faces);
   visit_cloth(description.material, path,

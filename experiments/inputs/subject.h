@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/model.h"
-#include "experiments/inputs/mesh_file.h"
+#include "experiments/inputs/mesh_input.h"
 #include "experiments/inputs/scene_description.h"
 
 namespace springstab {
@@ -19,6 +19,8 @@ struct InputOptions {
   std::optional<double> spacing;  // [m], with grid
   std::string material, pin;      // with grid or a mesh
   std::string stiffness, mass, damping_matrix;
+  bool sum_duplicates = false;  // of these matrices' entries
+  std::string rayleigh;         // "d0,alpha": damping of matrices beside D
 };
 
 /// A model, and where it came from.

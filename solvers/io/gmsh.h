@@ -1,17 +1,19 @@
-// The ASCII formats 1 and 2 of Gmsh's mesh files: nodes and tetrahedra, and nothing else of them.
+// The ASCII formats 1, 2 and 4 of Gmsh's mesh files: nodes, triangles, quadrangles and tetrahedra, and
+// nothing else of them (gmsh.info/doc/texinfo, "MSH file format" and its legacy versions).
 #pragma once
 
 #include <string>
 #include <string_view>
 
-#include "solvers/scene/tet_mesh.h"
+#include "solvers/io/mesh_builder.h"
 
 namespace springstab {
 
-/// Parses the nodes and the tetrahedra of first order (element type 4). Elements of points, lines and
-/// surfaces and sections other than nodes and elements are skipped. Throws InputError, with the line, for
-/// other solid elements, binary files, format 4, counts that differ from what is there, and anything that is
-/// not exactly a number. `source` is the file's name, for messages.
-TetMesh parse_gmsh(const std::string& source, std::string_view text);
+/// Parses the nodes and the elements of first order: a solid, where there are tetrahedra (element type 4),
+/// else a surface of triangles and quadrangles (types 2 and 3). Elements of points and lines and sections
+/// other than nodes and elements are skipped. Throws InputError, with the line, for other solid elements,
+/// curved elements, binary files, counts that differ from what is there, and anything that is not exactly a
+/// number. `source` is the file's name, for messages.
+AnyMesh parse_gmsh(const std::string& source, std::string_view text);
 
 }  // namespace springstab

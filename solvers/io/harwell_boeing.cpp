@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "solvers/io/matrix_builder.h"
+#include "solvers/io/fortran_format.h"
 #include "solvers/io/text_file.h"
 
 namespace springstab {
@@ -16,110 +15,45 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-char uppercase(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
-/// A format such as (16I5), (4E20.12) or (1P,5D16.8): `repeat` fields of `width` characters on a line.
-struct FortranFormat {
-  std::string text;
-  int scale = 0, repeat = 1, width = 0, decimals = 0;
-};
-
-/// Takes the next parenthesized format out of header line 4; its letter must be one of `kinds`.
-FortranFormat take_format(std::string_view& line, std::string_view kinds, const Location& at) {
-  const std::size_t open = std::min(line.find('('), line.size());
-  const std::size_t close = std::min(line.find(')', open), line.size());
-  FortranFormat format;
-  for (const char c : line.substr(open, close + 1 - open))
-    if (c != ' ') format.text += uppercase(c);
-  line.remove_prefix(std::min(close + 1, line.size()));
-
-  std::string_view rest = format.text;
-  const auto skip = [&rest](char c) {
-    if (!rest.starts_with(c)) return false;
-    rest.remove_prefix(1);
-    return true;
-  };
-  const auto number = [&rest](int otherwise) {
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), otherwise);
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    return error == std::errc::result_out_of_range ? -1 : otherwise;
-  };
-  bool good = skip('(');
-  format.repeat = number(1);
-  if (skip('P')) {
-    format.scale = std::exchange(format.repeat, 1);
-    skip(',');
-    format.repeat = number(1);
-  }
-  good = good && !rest.empty() && kinds.find(rest.front()) != kinds.npos;
-  if (good) rest.remove_prefix(1);
-  format.width = number(0);
-  if (skip('.')) format.decimals = number(-1);
-  if (skip('E')) number(0);  // width of the exponent: of no use to a reader
-  constexpr int longest = 1000;
-  good = good && rest == ")" && format.repeat > 0 && format.repeat <= longest && format.width > 0 &&
-         format.width <= longest && format.decimals >= 0;
-  if (!good)
-    at.fail("cannot use the format " + quoted(format.text) + ", expected one such as " +
-            (kinds == "I" ? "(16I5)" : "(4E20.12), (1P,5D16.8) or (10F7.1)"));
-  return format;
-}
-
-long long lines_for(long long fields, const FortranFormat& format) {
-  return (fields + format.repeat - 1) / format.repeat;
-}
-
-/// Calls use(k, field) for `count` fields, trimmed; a blank one, which Fortran would read as 0, is an error.
+/// Calls use(k, field, text) for `count` fields, trimmed; a blank one, which Fortran would read as 0, is an
+/// error.
 template <class Use>
 void read_fields(LineReader& lines, const FortranFormat& format, long long count, const std::string& what,
                  const Use& use) {
-  const auto width = static_cast<std::size_t>(format.width);
   std::string_view line;
-  for (long long k = 0; k < count; ++k) {
-    if (k % format.repeat == 0) {
-      if (!trimmed(line).empty())
-        lines.at().fail("text behind the last field, expected only what fits " + format.text);
+  std::size_t end = 0;  // of the last field
+  long long taken = 0;  // lines
+  const auto take_lines = [&](long long wanted, long long numbers) {
+    for (; taken < wanted; ++taken) {
+      if (!trimmed(line.substr(std::min(end, line.size()))).empty())
+        lines.at().fail("text behind the last field, expected only what fits " + format.text());
       if (!lines.next())
-        lines.at().fail("the file ends after " + std::to_string(k) + " " + what + ", expected " +
+        lines.at().fail("the file ends after " + std::to_string(numbers) + " " + what + ", expected " +
                         std::to_string(count));
       line = lines.line();
     }
-    const std::string_view field = trimmed(line.substr(0, width));
-    line.remove_prefix(std::min(width, line.size()));
-    if (field.empty())
+  };
+  for (long long k = 0; k < count; ++k) {
+    const FortranField field = format.field(k);
+    take_lines(field.line + 1, k);
+    const auto begin = static_cast<std::size_t>(field.column);
+    end = begin + static_cast<std::size_t>(field.width);
+    const std::string_view text = trimmed(line.substr(std::min(begin, line.size()), end - begin));
+    if (text.empty())
       lines.at().fail("a blank field, expected number " + std::to_string(k + 1) + " of the " +
-                      std::to_string(count) + " " + what + " in the format " + format.text);
-    use(k, field);
+                      std::to_string(count) + " " + what + " in the format " + format.text());
+    use(k, field, text);
   }
-  if (!trimmed(line).empty())
+  if (!trimmed(line.substr(std::min(end, line.size()))).empty())
     lines.at().fail("text behind the last of the " + std::to_string(count) + " " + what +
                     ", expected a blank");
-}
-
-/// A Fortran number: its exponent may be written E, D or as a mere sign ("1.5-103"). Where the meaning would
-/// hang on the format (an implied decimal point, a scale factor without an exponent) it is an error, for the
-/// programs that wrote such files do not agree. `buffer` only saves allocations.
-double fortran_real(std::string_view field, const FortranFormat& format, const Location& at,
-                    std::string& buffer) {
-  const std::size_t exponent = field.find_first_of("EeDd+-", 1);
-  buffer.assign(field.substr(0, exponent));
-  if (exponent != field.npos) {
-    const bool letter = field[exponent] != '+' && field[exponent] != '-';
-    buffer += 'e';
-    buffer += field.substr(exponent + letter);
-  }
-  const double value = at.real(buffer);
-  if (format.decimals > 0 && field.find('.') == field.npos)
-    at.fail(quoted(field) + " has no decimal point, expected one in the format " + format.text);
-  if (format.scale != 0 && exponent == field.npos)
-    at.fail(quoted(field) + " has no exponent, expected one in the format " + format.text);
-  return value;
+  line = {};
+  take_lines(format.lines_for(count), count);
 }
 
 /// The symmetry that a type such as RSA names; throws for what is not a real, square, assembled matrix.
 Symmetry parse_type(std::string_view word, const Location& at) {
-  std::string type(word);
-  std::ranges::transform(type, type.begin(), uppercase);
+  const std::string type = uppercase(word);
   const auto is = [&type](std::size_t i, std::string_view letters) {
     return letters.find(type[i]) != letters.npos;
   };
@@ -186,17 +120,17 @@ Header parse_header(LineReader& lines, std::size_t bytes) {
 
   next("the formats");
   std::string_view formats = lines.line();
-  header.pointers = take_format(formats, "I", lines.at());
-  header.indices = take_format(formats, "I", lines.at());
-  header.values = take_format(formats, "EDFGI", lines.at());
+  header.pointers = FortranFormat::take(formats, "I", lines.at());
+  header.indices = FortranFormat::take(formats, "I", lines.at());
+  header.values = FortranFormat::take(formats, "IFEDG", lines.at());
 
   const auto check = [&counts_at](long long number, long long expected, const std::string& what) {
     if (number != expected)
       counts_at.fail(std::to_string(number) + " lines of " + what + ", expected " + std::to_string(expected));
   };
-  check(pointer_lines, lines_for(columns + 1, header.pointers), "column pointers by their number and format");
-  check(index_lines, lines_for(header.entries, header.indices), "row indices by their number and format");
-  check(value_lines, lines_for(header.entries, header.values), "values by their number and format");
+  check(pointer_lines, header.pointers.lines_for(columns + 1), "column pointers by their number and format");
+  check(index_lines, header.indices.lines_for(header.entries), "row indices by their number and format");
+  check(value_lines, header.values.lines_for(header.entries), "values by their number and format");
   check(total, pointer_lines + index_lines + value_lines + right_hand_side_lines, "data in total");
   if (right_hand_side_lines > 0) next("the kind of the right-hand sides");
   return header;
@@ -210,19 +144,21 @@ bool looks_like_harwell_boeing(std::string_view text) {
     if (!lines.next()) return false;
   Words words;
   append_words(lines.line(), words);
-  const auto letter = [](char c) { return uppercase(c) >= 'A' && uppercase(c) <= 'Z'; };
-  if (words.empty() || words[0].size() != 3 || !std::ranges::all_of(words[0], letter)) return false;
+  const auto letter = [](char c) { return c >= 'A' && c <= 'Z'; };
+  if (words.empty() || words[0].size() != 3 || !std::ranges::all_of(uppercase(words[0]), letter))
+    return false;
   return lines.next() && trimmed(lines.line()).starts_with('(');
 }
 
-Eigen::SparseMatrix<double> parse_harwell_boeing(std::string_view source, std::string_view text) {
+Eigen::SparseMatrix<double> parse_harwell_boeing(std::string_view source, std::string_view text,
+                                                 Duplicates duplicates) {
   LineReader lines(source, text);
   const Header header = parse_header(lines, text.size());
   // The file counts from 1: column c holds the entries pointers[c - 1] to pointers[c] - 1.
   std::vector<long long> pointers;
   pointers.reserve(static_cast<std::size_t>(header.n) + 1);
   read_fields(lines, header.pointers, header.n + 1LL, "column pointers",
-              [&](long long k, std::string_view field) {
+              [&](long long k, const FortranField&, std::string_view field) {
                 const long long pointer = lines.at().integer(field);
                 const long long least = k == header.n ? header.entries + 1 : k == 0 ? 1 : pointers.back();
                 const long long most = k == 0 ? 1 : header.entries + 1;
@@ -237,18 +173,20 @@ Eigen::SparseMatrix<double> parse_harwell_boeing(std::string_view source, std::s
   rows.reserve(static_cast<std::size_t>(header.entries));
   const long index_line = lines.at().line + 1;
   read_fields(lines, header.indices, header.entries, "row indices",
-              [&](long long, std::string_view field) { rows.push_back(lines.at().integer(field)); });
+              [&](long long, const FortranField&, std::string_view field) {
+                rows.push_back(lines.at().integer(field));
+              });
 
   MatrixBuilder builder(std::string(source), header.n, header.n, header.symmetry);
   builder.reserve(rows.size());
   std::size_t column = 1;
-  std::string buffer;
-  read_fields(lines, header.values, header.entries, "values", [&](long long k, std::string_view field) {
+  const auto add = [&](long long k, const FortranField& field, std::string_view number) {
     while (pointers[column] <= k + 1) ++column;
-    const double value = fortran_real(field, header.values, lines.at(), buffer);
-    builder.add(index_line + static_cast<long>(k / header.indices.repeat), rows[static_cast<std::size_t>(k)],
-                static_cast<long long>(column), value);
-  });
+    builder.add(index_line + static_cast<long>(header.indices.field(k).line),
+                rows[static_cast<std::size_t>(k)], static_cast<long long>(column),
+                fortran_number(number, field, lines.at()));
+  };
+  read_fields(lines, header.values, header.entries, "values", add);
 
   for (long long k = 0; k < header.right_hand_side_lines; ++k)
     if (!lines.next())
@@ -258,7 +196,7 @@ Eigen::SparseMatrix<double> parse_harwell_boeing(std::string_view source, std::s
     if (!trimmed(lines.line()).empty())
       lines.at().fail(
           "text after the matrix, expected the end of the file by the numbers of lines on line 2");
-  return std::move(builder).build();
+  return std::move(builder).build(duplicates);
 }
 
 }  // namespace springstab

@@ -6,6 +6,8 @@
 #include <Eigen/SparseCore>
 #include <string_view>
 
+#include "solvers/io/matrix_builder.h"
+
 namespace springstab {
 
 /// Whether lines 3 and 4 of the text look like this format's: a three-letter type and parenthesized formats.
@@ -14,6 +16,7 @@ bool looks_like_harwell_boeing(std::string_view text);
 /// Parses assembled square real (or integer) matrices: types RSA, RUA, RZA, ISA, IUA, IZA in either case;
 /// symmetric and skew-symmetric ones are expanded. Right-hand sides are skipped. Throws InputError, naming
 /// `source` and the line, for everything else, and before it allocates more than the text can back.
-Eigen::SparseMatrix<double> parse_harwell_boeing(std::string_view source, std::string_view text);
+Eigen::SparseMatrix<double> parse_harwell_boeing(std::string_view source, std::string_view text,
+                                                 Duplicates duplicates = Duplicates::refused);
 
 }  // namespace springstab

@@ -1,6 +1,7 @@
 #include "solvers/io/matrix_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -22,16 +23,38 @@ void MatrixBuilder::add(long line, long long row, long long column, double value
   if (row < 1 || row > rows_ || column < 1 || column > columns_)
     at.fail("the entry " + position(row, column) + " lies outside the matrix, expected rows 1 to " +
             std::to_string(rows_) + " and columns 1 to " + std::to_string(columns_));
-  if (symmetry_ == Symmetry::symmetric && row < column)
-    at.fail("the entry " + position(row, column) +
-            " lies above the diagonal, expected only the lower triangle of a symmetric matrix");
-  if (symmetry_ == Symmetry::skew_symmetric && row <= column)
-    at.fail("the entry " + position(row, column) +
-            " does not lie below the diagonal, expected only entries that do in a skew-symmetric matrix");
+  if (symmetry_ == Symmetry::skew_symmetric && row == column) {
+    if (value != 0)
+      at.fail("the entry " + position(row, column) +
+              " lies on the diagonal of a skew-symmetric matrix, expected nothing but 0 there");
+    return;
+  }
+  if (symmetry_ != Symmetry::general && row < column) {  // the mirror image, in the lower triangle
+    std::swap(row, column);
+    if (symmetry_ == Symmetry::skew_symmetric) value = -value;
+  }
   entries_.emplace_back(static_cast<int>(row - 1), static_cast<int>(column - 1), value, line);
 }
 
-Eigen::SparseMatrix<double> MatrixBuilder::build() && {
+/// entries_: sorted.
+void MatrixBuilder::check_duplicates(Duplicates duplicates) const {
+  double sum = 0;
+  for (std::size_t i = 1; i < entries_.size(); ++i) {
+    const Entry &before = entries_[i - 1], &entry = entries_[i];
+    const bool same = before.row() == entry.row() && before.col() == entry.col();
+    sum = (same ? sum : 0) + before.value();
+    if (!same || (duplicates == Duplicates::summed && std::isfinite(sum + entry.value()))) continue;
+    Location{source_, entry.line}.fail(
+        "a second entry " + position(entry.row() + 1LL, entry.col() + 1LL) +
+        (symmetry_ == Symmetry::general ? "" : " or its mirror image") + " after that of line " +
+        std::to_string(before.line) +
+        (duplicates == Duplicates::refused
+             ? ", expected one entry per position (--sum-duplicates adds them up)"
+             : ", expected that their sum fits in double precision"));
+  }
+}
+
+Eigen::SparseMatrix<double> MatrixBuilder::build(Duplicates duplicates) && {
   const std::size_t listed = entries_.size();
   if (listed >
       std::numeric_limits<int>::max() / 2)  // Eigen counts entries with int, and mirroring doubles them
@@ -39,11 +62,7 @@ Eigen::SparseMatrix<double> MatrixBuilder::build() && {
   const auto order = [](const Entry& e) { return std::tuple(e.col(), e.row(), e.line); };
   const auto before = [&order](const Entry& a, const Entry& b) { return order(a) < order(b); };
   if (!std::ranges::is_sorted(entries_, before)) std::ranges::sort(entries_, before);
-  const auto same = [](const Entry& a, const Entry& b) { return a.row() == b.row() && a.col() == b.col(); };
-  if (const auto twice = std::ranges::adjacent_find(entries_, same); twice != entries_.end())
-    Location{source_, std::next(twice)->line}.fail(
-        "a second entry " + position(twice->row() + 1LL, twice->col() + 1LL) + " after that of line " +
-        std::to_string(twice->line) + ", expected one entry per position");
+  check_duplicates(duplicates);
   if (symmetry_ != Symmetry::general) {
     const double sign = symmetry_ == Symmetry::symmetric ? 1 : -1;
     entries_.reserve(2 * listed);

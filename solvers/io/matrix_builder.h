@@ -9,8 +9,12 @@
 
 namespace springstab {
 
-/// What a file leaves out. Symmetric: entries above the diagonal; skew-symmetric: the diagonal as well.
+/// What a file leaves out. Symmetric: entries above the diagonal, or those below; skew-symmetric: the
+/// diagonal as well.
 enum class Symmetry { general, symmetric, skew_symmetric };
+
+/// What becomes of several entries at one position.
+enum class Duplicates { refused, summed };
 
 /// Collects entries in any order. A symmetric or skew-symmetric matrix must be square.
 class MatrixBuilder {
@@ -19,14 +23,17 @@ class MatrixBuilder {
 
   void reserve(std::size_t entries) { entries_.reserve(entries); }
 
-  /// Adds the entry of a 1-based position. Throws InputError at `line` for a position outside the matrix or
-  /// in the part that its symmetry leaves out.
+  /// Adds the entry of a 1-based position. Throws InputError at `line` for a position outside the matrix and
+  /// for an entry other than 0 on a skew-symmetric matrix's diagonal.
   void add(long line, long long row, long long column, double value);
 
-  /// The matrix with both triangles. Throws InputError for two entries at one position, naming both lines.
-  Eigen::SparseMatrix<double> build() &&;
+  /// The matrix with both triangles. Throws InputError, naming both lines, for two entries at one position
+  /// (or, with symmetry, at one and its mirror image) if they are refused, or if their sum is not finite.
+  Eigen::SparseMatrix<double> build(Duplicates duplicates) &&;
 
  private:
+  void check_duplicates(Duplicates duplicates) const;
+
   struct Entry : Eigen::Triplet<double> {
     Entry(int row, int column, double value, long at) : Triplet(row, column, value), line(at) {}
     long line;

@@ -11,13 +11,6 @@
 namespace springstab {
 namespace {
 
-std::string lowercase_suffix(const std::string& path) {
-  std::string suffix = std::filesystem::path(path).extension().string();
-  for (char& c : suffix)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return suffix;
-}
-
 /// .hb, .rb, or a matrix type: real, complex, pattern or integer; its symmetry; assembled or elemental.
 bool is_harwell_boeing_suffix(std::string_view suffix) {
   const auto has = [suffix](std::size_t i, std::string_view letters) {
@@ -29,13 +22,13 @@ bool is_harwell_boeing_suffix(std::string_view suffix) {
 
 }  // namespace
 
-Eigen::SparseMatrix<double> read_matrix(const std::string& path) {
+Eigen::SparseMatrix<double> read_matrix(const std::string& path, Duplicates duplicates) {
   const std::string text = read_text_file(path);
-  if (has_matrix_market_banner(text)) return parse_matrix_market(path, text);
-  if (looks_like_harwell_boeing(text)) return parse_harwell_boeing(path, text);
-  const std::string suffix = lowercase_suffix(path);
-  if (suffix == ".mtx" || suffix == ".mm") return parse_matrix_market(path, text);
-  if (is_harwell_boeing_suffix(suffix)) return parse_harwell_boeing(path, text);
+  if (has_matrix_market_banner(text)) return parse_matrix_market(path, text, duplicates);
+  if (looks_like_harwell_boeing(text)) return parse_harwell_boeing(path, text, duplicates);
+  const std::string suffix = lowercase(std::filesystem::path(path).extension().string());
+  if (suffix == ".mtx" || suffix == ".mm") return parse_matrix_market(path, text, duplicates);
+  if (is_harwell_boeing_suffix(suffix)) return parse_harwell_boeing(path, text, duplicates);
   throw InputError(
       path, 1,
       "neither a Matrix Market banner nor a Harwell-Boeing header, expected a file that begins with "

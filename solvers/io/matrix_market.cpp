@@ -1,12 +1,12 @@
 #include "solvers/io/matrix_market.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "solvers/io/matrix_builder.h"
 #include "solvers/io/text_file.h"
 
 namespace springstab {
@@ -16,16 +16,9 @@ using Words = std::vector<std::string_view>;
 
 constexpr std::string_view banner = "%%matrixmarket";
 
-std::string lowercase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
-
 /// What the banner line says: "%%MatrixMarket matrix FORMAT FIELD SYMMETRY".
 struct Kind {
-  bool coordinate = true, integer = false;
+  bool coordinate = true;
   Symmetry symmetry = Symmetry::general;
 };
 
@@ -33,6 +26,8 @@ Kind parse_banner(std::string_view line, const Location& at) {
   const std::string lower = lowercase(line);
   Words words;
   append_words(lower, words);
+  const auto comment = [](std::string_view word) { return word.starts_with('%') && word != banner; };
+  words.erase(std::ranges::find_if(words, comment), words.end());
   if (words.empty() || words[0] != banner)
     at.fail("no Matrix Market banner, expected '%%MatrixMarket matrix coordinate real general' or the like");
   if (words.size() != 5 || words[1] != "matrix")
@@ -44,9 +39,9 @@ Kind parse_banner(std::string_view line, const Location& at) {
     at.fail("unknown format " + quoted(words[2]) + ", expected coordinate or array");
   if (words[3] == "complex") at.fail("a complex matrix, expected a real or integer one");
   if (words[3] == "pattern") at.fail("a pattern without values, expected a real or integer matrix");
-  if (words[3] == "integer")
-    kind.integer = true;
-  else if (words[3] != "real" && words[3] != "double")
+  constexpr auto fields =
+      std::to_array<std::string_view>({"real", "double", "float", "integer", "unsigned-integer"});
+  if (!is_among(fields, words[3]))
     at.fail("unknown field " + quoted(words[3]) + ", expected real or integer");
   if (words[4] == "hermitian")
     at.fail("a hermitian, hence complex matrix, expected general, symmetric or skew-symmetric");
@@ -59,13 +54,20 @@ Kind parse_banner(std::string_view line, const Location& at) {
   return kind;
 }
 
+/// Steps to the first line that is not blank, trimmed.
+std::string_view first_line(LineReader& lines) {
+  std::string_view line;
+  while (line.empty() && lines.next()) line = trimmed(lines.line());
+  return line;
+}
+
 /// Steps to the next line with data and splits it; false at the end of the text.
 bool next_data(LineReader& lines, Words& words) {
   do {
     if (!lines.next()) return false;
     words.clear();
-    append_words(lines.line(), words);
-  } while (words.empty() || words[0].starts_with('%'));
+    append_words(lines.line(), words, '%');
+  } while (words.empty());
   return true;
 }
 
@@ -120,12 +122,13 @@ void check_backed(const Kind& kind, const Size& size, std::size_t bytes_left, co
 
 bool has_matrix_market_banner(std::string_view text) {
   LineReader lines({}, text);
-  return lines.next() && lowercase(lines.line().substr(0, banner.size())) == banner;
+  return lowercase(first_line(lines).substr(0, banner.size())) == banner;
 }
 
-Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text) {
+Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text,
+                                                Duplicates duplicates) {
   LineReader lines(source, text);
-  lines.next();
+  first_line(lines);
   const Kind kind = parse_banner(lines.line(), lines.at());
   Words words;
   if (!next_data(lines, words)) lines.at().fail("the file ends here, expected a size line");
@@ -134,9 +137,6 @@ Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::st
 
   MatrixBuilder builder(std::string(source), size.rows, size.columns, kind.symmetry);
   if (kind.coordinate) builder.reserve(static_cast<std::size_t>(size.entries));
-  const auto value = [&](std::string_view word) {
-    return kind.integer ? static_cast<double>(lines.at().integer(word)) : lines.at().real(word);
-  };
   // An array lists column after column, each from this row down.
   const auto first_row = [&](int column) {
     return kind.symmetry == Symmetry::general     ? 1
@@ -155,16 +155,17 @@ Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::st
       at.fail("an entry of " + std::to_string(words.size()) + " words, expected " +
               (kind.coordinate ? "row, column and value" : "one value"));
     if (kind.coordinate) {
-      builder.add(at.line, at.integer(words[0]), at.integer(words[1]), value(words[2]));
+      builder.add(at.line, at.integer(words[0]), at.integer(words[1]), at.fortran_real(words[2]));
     } else {
-      if (const double entry = value(words[0]); entry != 0) builder.add(at.line, row, column, entry);
+      if (const double entry = at.fortran_real(words[0]); entry != 0)
+        builder.add(at.line, row, column, entry);
       if (++row > size.rows) row = first_row(++column);
     }
   }
   if (entries < size.entries)
     lines.at().fail("the file ends after " + std::to_string(entries) + " entries, expected " +
                     std::to_string(size.entries) + " from the size on line " + std::to_string(size.line));
-  return std::move(builder).build();
+  return std::move(builder).build(duplicates);
 }
 
 }  // namespace springstab

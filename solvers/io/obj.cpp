@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "solvers/io/input_error.h"
@@ -15,14 +18,19 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// What the format has and a polygon mesh does not need. `call` and `csh` are not among them: they bring in
-/// other files, and skipping those would silently lose geometry.
-constexpr auto skipped_keywords = std::to_array<std::string_view>(
-    {"vn",       "vp",    "cstype", "deg",    "bmat",   "step",   "p",          "l",
-     "curv",     "curv2", "surf",   "parm",   "trim",   "hole",   "scrv",       "sp",
-     "end",      "con",   "g",      "s",      "mg",     "o",      "bevel",      "c_interp",
-     "d_interp", "lod",   "usemap", "usemtl", "mtllib", "maplib", "shadow_obj", "trace_obj",
-     "ctech",    "stech", "bsp",    "bzp",    "cdc",    "cdp",    "res"});
+/// What the format has and a polygon mesh does not need.
+constexpr auto obj_skipped =
+    std::to_array<std::string_view>({"vn", "g", "s", "mg", "o", "bevel", "c_interp", "d_interp", "lod",
+                                     "usemap", "usemtl", "mtllib", "maplib", "shadow_obj", "trace_obj"});
+
+/// What would add to the geometry, or belongs to its vertices, and is left out: points, lines, free-form
+/// curves and surfaces with all that they consist of; and from other programs than the format's first,
+/// weights and colours of vertices and the creases of subdivision surfaces. `call` and `csh` are in neither
+/// list: they bring in other files.
+constexpr auto obj_left_out = std::to_array<std::string_view>(
+    {"p",     "l",    "vp",   "cstype", "deg",  "bmat", "step", "curv", "curv2",
+     "surf",  "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "ctech",
+     "stech", "bsp",  "bzp",  "cdc",    "cdp",  "res",  "vw",   "vc",   "t"});
 
 /// Collects the words of the next statement: one line, or several where a line ends in a backslash.
 /// Returns where it begins; line 0 once the file has ended.
@@ -31,24 +39,33 @@ Location next_statement(LineReader& lines, Words& words) {
   Location begin;
   for (bool continued = true; continued && lines.next();) {
     if (begin.line == 0) begin = lines.at();
-    std::string_view line = lines.line();
-    line = line.substr(0, line.find('#'));
+    std::string_view line = trimmed(lines.line());
     continued = line.ends_with('\\');
     if (continued) line.remove_suffix(1);
-    append_words(line, words);
+    continued = append_words(line, words, '#') && continued;
   }
   return begin;
 }
 
+/// Things of one kind that are dropped or not used: how many, and the line of the first.
+struct Tally {
+  long count = 0, line = 0;
+  void add(const Location& at) {
+    if (count++ == 0) line = at.line;
+  }
+};
+
 /// `v` x y z, and unused behind them: a weight, a colour (three numbers) or both.
-Eigen::Vector3d parse_vertex(const Words& words, const Location& at) {
-  std::array<double, 7> numbers{};
+Eigen::Vector3d parse_vertex(const Words& words, const Location& at, Tally& not_finite) {
   const std::size_t count = words.size() - 1;
   if (count != 3 && count != 4 && count != 6 && count != 7)
     at.fail("a vertex with " + std::to_string(count) +
             " numbers, expected x y z and at most a weight and a colour (r g b) after them");
-  for (std::size_t i = 0; i < count; ++i) numbers[i] = at.real(words[i + 1]);
-  return {numbers[0], numbers[1], numbers[2]};
+  const auto unused = std::span(words).subspan(4);
+  if (std::ranges::any_of(unused, is_not_finite)) not_finite.add(at);
+  for (const std::string_view word : unused)
+    if (!is_not_finite(word)) at.real(word);
+  return {at.real(words[1]), at.real(words[2]), at.real(words[3])};
 }
 
 [[noreturn]] void fail_index(const std::string& kind, long long index, const std::string& expected,
@@ -57,12 +74,14 @@ Eigen::Vector3d parse_vertex(const Words& words, const Location& at) {
 }
 
 /// `vt` u, and v and a depth that default to 0; the depth is not used.
-Eigen::Vector2d parse_texture(const Words& words, const Location& at) {
+Eigen::Vector2d parse_texture(const Words& words, const Location& at, Tally& not_finite) {
   std::array<double, 3> numbers{};
   const std::size_t count = words.size() - 1;
   if (count < 1 || count > 3)
     at.fail("texture coordinates with " + std::to_string(count) + " numbers, expected u, u v or u v w");
-  for (std::size_t i = 0; i < count; ++i) numbers[i] = at.real(words[i + 1]);
+  if (std::ranges::any_of(words, is_not_finite)) not_finite.add(at);
+  for (std::size_t i = 0; i < count; ++i)
+    if (!is_not_finite(words[i + 1])) numbers[i] = at.real(words[i + 1]);
   return {numbers[0], numbers[1]};
 }
 
@@ -78,43 +97,148 @@ int place(long long index, const std::string& kind, const std::string& things, s
   return static_cast<int>(index > 0 ? index - 1 : last + index);
 }
 
-/// A corner i, i/t, i/t/n or i//n: its vertex and its texture coordinates, from 0, or -1 for none.
-struct Corner {
-  int vertex, texture;
-};
-
-Corner parse_corner(std::string_view word, std::size_t vertices_so_far, std::size_t textures_so_far,
-                    const Location& at) {
-  if (word.starts_with('/') || word.ends_with('/'))
-    at.fail("the corner " + quoted(word) + " lacks an index, expected i, i/t, i/t/n or i//n");
-  const std::size_t slash = word.find('/');
-  const long long vertex = at.integer(word.substr(0, slash));
-  std::optional<long long> texture;
-  if (slash != word.npos) {
-    const std::string_view more = word.substr(slash + 1);
-    const std::size_t second = more.find('/');
-    if (second != 0) texture = at.integer(more.substr(0, second));
-    if (second != more.npos) at.integer(more.substr(second + 1));  // a normal: not used, but must be an index
+/// The indices of a corner i, i/t, i/t/n or i//n; 0 for one that is left out. Some programs write the slashes
+/// of what they leave out (i//, i/t/), or 0 in its place.
+std::array<long long, 3> parse_corner(std::string_view word, const Location& at) {
+  std::array<long long, 3> indices{};
+  std::string_view rest = word;
+  std::size_t slash = 0;
+  for (std::size_t i = 0; i < indices.size() && slash != rest.npos; ++i) {
+    slash = rest.find('/');
+    const std::string_view index = rest.substr(0, slash);
+    if (i == 0 && index.empty())
+      at.fail("the corner " + quoted(word) + " lacks its vertex, expected i, i/t, i/t/n or i//n");
+    if (!index.empty()) indices[i] = at.integer(index);
+    if (slash != rest.npos) rest.remove_prefix(slash + 1);
   }
-  return {place(vertex, "vertex", "vertices", vertices_so_far, at),
-          texture ? place(*texture, "texture", "texture coordinates", textures_so_far, at) : -1};
+  if (slash != rest.npos)
+    at.fail("the corner " + quoted(word) + " has more than three indices, expected i, i/t, i/t/n or i//n");
+  return indices;
 }
 
-/// textures: of the corners, among `texture_count` in the file.
-void check_indices(const Mesh& mesh, const std::vector<int>& textures, std::size_t texture_count) {
-  const auto vertices = static_cast<int>(mesh.vertices.size());
-  for (int f = 0; f < mesh.faces(); ++f) {
-    const Location at{mesh.source, mesh.face_line[static_cast<std::size_t>(f)]};
-    for (int corner = mesh.face_offsets[f]; corner < mesh.face_offsets[f + 1]; ++corner) {
-      if (const int vertex = mesh.face_vertices[corner]; vertex >= vertices)
-        fail_index("vertex", vertex + 1LL,
-                   "at most " + std::to_string(vertices) + " (the vertices of the file)", at);
-      if (const int texture = textures[corner]; texture >= static_cast<int>(texture_count))
-        fail_index("texture", texture + 1LL,
-                   "at most " + std::to_string(texture_count) + " (the texture coordinates of the file)", at);
+class ObjReader {
+ public:
+  explicit ObjReader(const std::string& source) { mesh_.source = source; }
+
+  Mesh read(std::string_view text) {
+    LineReader lines(mesh_.source, text);
+    Words words;
+    while (true) {
+      const Location at = next_statement(lines, words);
+      if (at.line == 0) break;
+      if (!words.empty()) statement(words, at);
+    }
+    if (mesh_.vertices.empty())
+      throw InputError(mesh_.source, 0, "no vertices, expected lines such as 'v 0 0 0'");
+    if (mesh_.faces() == 0)
+      throw InputError(
+          mesh_.source, short_faces_.line,
+          std::string(short_faces_.count > 0 ? "no face has three or more corners" : "no faces") +
+              ", expected lines such as 'f 1 2 3'");
+    check_indices();
+    use_textures();
+    tell();
+    return std::move(mesh_);
+  }
+
+ private:
+  void statement(const Words& words, const Location& at) {
+    const std::string_view keyword = words.front();
+    if (keyword == "v") {
+      mesh_.vertices.push_back(parse_vertex(words, at, colours_));
+      mesh_.vertex_line.push_back(at.line);
+    } else if (keyword == "vt") {
+      textures_.push_back(parse_texture(words, at, coordinates_));
+    } else if (keyword == "f" || keyword == "fo") {  // "fo": what old files call it
+      face(words, at);
+    } else if (is_among(obj_left_out, keyword)) {
+      left_out_[keyword].add(at);
+    } else if (!is_among(obj_skipped, keyword)) {
+      at.fail("unknown statement " + quoted(keyword) +
+              ", expected one of Wavefront OBJ's such as v, f, vt or g");
     }
   }
-}
+
+  void face(const Words& words, const Location& at) {
+    if (words.size() < 2) at.fail("a face with 0 corners, expected 3 or more");
+    const bool dropped = words.size() < 4;
+    if (dropped) short_faces_.add(at);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      const auto [vertex, texture, normal] = parse_corner(words[i], at);
+      const int corner = place(vertex, "vertex", "vertices", mesh_.vertices.size(), at);
+      if (dropped) continue;
+      mesh_.face_vertices.push_back(corner);
+      corner_textures_.push_back(texture_place(texture, at));
+    }
+    if (dropped) return;
+    mesh_.face_offsets.push_back(static_cast<int>(mesh_.face_vertices.size()));
+    mesh_.face_line.push_back(at.line);
+  }
+
+  /// A file without texture coordinates may yet name them.
+  int texture_place(long long index, const Location& at) {
+    if (index == 0) return none;
+    if (index > 0 || !textures_.empty())
+      return place(index, "texture", "texture coordinates", textures_.size(), at);
+    if (!early_) early_ = {index, at};
+    return none;
+  }
+
+  void check_indices() const {
+    const auto vertices = static_cast<int>(mesh_.vertices.size()),
+               textures = static_cast<int>(textures_.size());
+    if (early_ && textures > 0)
+      fail_index("texture", early_->first, "an index from 1, for no texture coordinates stand before it",
+                 early_->second);
+    for (int f = 0; f < mesh_.faces(); ++f) {
+      const Location at{mesh_.source, mesh_.face_line[static_cast<std::size_t>(f)]};
+      for (int corner = mesh_.face_offsets[f]; corner < mesh_.face_offsets[f + 1]; ++corner) {
+        if (const int vertex = mesh_.face_vertices[corner]; vertex >= vertices)
+          fail_index("vertex", vertex + 1LL,
+                     "at most " + std::to_string(vertices) + " (the vertices of the file)", at);
+        if (const int texture = corner_textures_[corner]; texture >= textures && textures > 0)
+          fail_index("texture", texture + 1LL,
+                     "at most " + std::to_string(textures) + " (the texture coordinates of the file)", at);
+      }
+    }
+  }
+
+  /// Only where all corners have coordinates, and all coordinates are numbers.
+  void use_textures() {
+    for (int f = 0; f < mesh_.faces() && textures_.empty(); ++f)
+      if (corner_textures_[mesh_.face_offsets[f]] != none)
+        unnamed_.add({mesh_.source, mesh_.face_line[static_cast<std::size_t>(f)]});
+    if (early_) unnamed_.add(early_->second);
+    if (textures_.empty() || coordinates_.count > 0 || is_among(corner_textures_, int{none})) return;
+    for (const int texture : corner_textures_) mesh_.corner_uv.push_back(textures_[texture]);
+  }
+
+  void tell() {
+    const auto note = [this](const Tally& tally, const std::string& one, const std::string& many) {
+      if (tally.count > 0)
+        mesh_.notes.push_back({tally.line, tally.count == 1 ? one : std::to_string(tally.count) + many});
+    };
+    note(short_faces_, "dropped a face of one or two corners", " faces of one or two corners are dropped");
+    for (const auto& [keyword, tally] : left_out_)
+      note(tally, "the statement " + quoted(keyword) + " is not used",
+           " statements " + quoted(keyword) + " are not used");
+    note(colours_, "a weight or colour that is no number, which is not used",
+         " vertices have a weight or colour that is no number, which is not used");
+    note(coordinates_, "no texture coordinates are used, for these are no numbers",
+         " texture coordinates are no numbers, and none are used");
+    if (unnamed_.count > 0)
+      mesh_.notes.push_back({unnamed_.line, "texture coordinates are named, but the file has none"});
+  }
+
+  static constexpr int none = -1;
+
+  Mesh mesh_;
+  std::vector<Eigen::Vector2d> textures_;                // of the file
+  std::vector<int> corner_textures_;                     // of the corners
+  std::optional<std::pair<long long, Location>> early_;  // the first index back from where none is yet
+  std::map<std::string_view, Tally> left_out_;           // by the statement
+  Tally short_faces_, colours_, coordinates_, unnamed_;
+};
 
 }  // namespace
 
@@ -122,43 +246,7 @@ Mesh parse_obj(const std::string& source, std::string_view text) {
   if (text.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
     throw InputError(source, 0,
                      "the file has more than 2^31 - 1 bytes, expected a smaller mesh");  // indices are int
-  Mesh mesh;
-  mesh.source = source;
-  LineReader lines(mesh.source, text);
-  Words words;
-  std::vector<Eigen::Vector2d> textures;  // of the file
-  std::vector<int> corner_textures;       // of the corners, -1 for none
-  while (true) {
-    const Location at = next_statement(lines, words);
-    if (at.line == 0) break;
-    if (words.empty()) continue;
-    const std::string_view keyword = words.front();
-    if (keyword == "v") {
-      mesh.vertices.push_back(parse_vertex(words, at));
-      mesh.vertex_line.push_back(at.line);
-    } else if (keyword == "vt") {
-      textures.push_back(parse_texture(words, at));
-    } else if (keyword == "f" || keyword == "fo") {  // "fo": what old files call it
-      if (words.size() < 4)
-        at.fail("a face with " + std::to_string(words.size() - 1) + " corners, expected 3 or more");
-      for (std::size_t i = 1; i < words.size(); ++i) {
-        const Corner corner = parse_corner(words[i], mesh.vertices.size(), textures.size(), at);
-        mesh.face_vertices.push_back(corner.vertex);
-        corner_textures.push_back(corner.texture);
-      }
-      mesh.face_offsets.push_back(static_cast<int>(mesh.face_vertices.size()));
-      mesh.face_line.push_back(at.line);
-    } else if (std::ranges::find(skipped_keywords, keyword) == skipped_keywords.end()) {
-      at.fail("unknown statement " + quoted(keyword) +
-              ", expected one of Wavefront OBJ's such as v, f, vt or g");
-    }
-  }
-  if (mesh.vertices.empty()) throw InputError(source, 0, "no vertices, expected lines such as 'v 0 0 0'");
-  if (mesh.faces() == 0) throw InputError(source, 0, "no faces, expected lines such as 'f 1 2 3'");
-  check_indices(mesh, corner_textures, textures.size());
-  if (std::ranges::find(corner_textures, -1) == corner_textures.end())
-    for (const int texture : corner_textures) mesh.corner_uv.push_back(textures[texture]);
-  return mesh;
+  return ObjReader(source).read(text);
 }
 
 Mesh read_obj(const std::string& path) { return parse_obj(path, read_text_file(path)); }

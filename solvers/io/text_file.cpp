@@ -20,6 +20,7 @@ namespace springstab {
 namespace {
 
 constexpr std::string_view blanks = " \t\v\f\r";
+constexpr std::string_view gzip = "\x1f\x8b";  // what its files begin with
 
 /// std::from_chars does not know the sign '+'; here it may stand before a number, but not before another
 /// sign.
@@ -34,6 +35,20 @@ void wait_for_writer(int pipe) {
   pollfd readable{pipe, POLLIN, 0};
   poll(&readable, 1, 1000);
   fcntl(pipe, F_SETFL, 0);
+}
+
+/// Of a decimal number outside the range of double precision, whether it lies below that range: whether the
+/// power of ten of its first digit that is not 0 is negative.
+bool is_tiny(std::string_view number) {
+  const std::size_t letter = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view mantissa = number.substr(0, letter);
+  const auto point = static_cast<long long>(std::min(mantissa.find('.'), mantissa.size()));
+  const auto digit = static_cast<long long>(mantissa.find_first_of("123456789"));
+  const std::string_view power = without_plus(number.substr(std::min(letter + 1, number.size())));
+  long long exponent = 0;
+  const auto error = std::from_chars(power.data(), power.data() + power.size(), exponent).ec;
+  if (error == std::errc::result_out_of_range) return power.starts_with('-');
+  return exponent < digit - point + (digit < point ? 1 : 0);
 }
 
 }  // namespace
@@ -68,11 +83,13 @@ std::string read_text_file(const std::string& path) {
     const std::size_t before = text.size();
     text.append(buffer.data(), read);
     check_size(text.size());
-    if (const std::size_t zero = text.find('\0', before); zero != text.npos)
-      Location{path, 1 + static_cast<long>(std::count(text.begin(), text.begin() + zero, '\n'))}.fail(
-          "a zero byte, expected text in ASCII or UTF-8");
+    if (const std::size_t zero = text.find('\0', before); zero != text.npos) {
+      const long lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+      Location{path, 1 + lines}.fail(binary_file_message(text));
+    }
   }
   if (std::ferror(file.get())) fail("cannot be read", errno);
+  if (text.starts_with(gzip)) throw InputError(path, 0, binary_file_message(text));
   if (text.empty()) throw InputError(path, 0, "the file is empty, expected text");
   return text;
 }
@@ -81,16 +98,38 @@ void Location::fail(const std::string& message) const {
   throw InputError(std::string(source), line, message);
 }
 
-double Location::real(std::string_view word) const {
-  const std::string_view number = without_plus(word);
+std::string binary_file_message(std::string_view beginning) {
+  const auto begins = [&](std::string_view magic) { return beginning.starts_with(magic); };
+  const std::string_view remedy =
+      begins("$MeshFormat")      ? "`gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
+      : begins("# vtk DataFile") ? "ParaView's file type ASCII or VTK's SetFileTypeToASCII() saves it"
+      : begins(gzip)             ? "`gunzip` unpacks it"
+                                 : "";
+  return remedy.empty() ? "a zero byte, expected text in ASCII or UTF-8"
+                        : "the file is binary, expected text: " + std::string(remedy);
+}
+
+double Location::real_shown_as(std::string_view number, std::string_view word) const {
+  number = without_plus(number);
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (error == std::errc::invalid_argument || end != number.data() + number.size())
+  const bool whole = end == number.data() + number.size();
+  if (error == std::errc() && whole && std::isfinite(value)) return value;
+  if (is_not_finite(word)) fail(quoted(word) + " is not finite, expected a finite number");
+  if (error != std::errc::result_out_of_range || !whole)
     fail(quoted(word) + " is not a number, expected one such as 1.5 or -2e-3");
-  if (error == std::errc::result_out_of_range)
+  if (!is_tiny(number))
     fail(quoted(word) + " is out of range, expected a number that fits in double precision");
-  if (!std::isfinite(value)) fail(quoted(word) + " is not finite, expected a finite number");
-  return value;
+  return number.starts_with('-') ? -0.0 : 0.0;
+}
+
+double Location::fortran_real(std::string_view word) const {
+  const std::size_t exponent = word.find_first_of("DdQqEe+-", 1);
+  if (exponent == word.npos || word[exponent] == 'e' || word[exponent] == 'E') return real(word);
+  const bool letter = word[exponent] != '+' && word[exponent] != '-';
+  const std::string number =
+      std::string(word.substr(0, exponent)) + 'e' + std::string(word.substr(exponent + letter));
+  return real_shown_as(number, word);
 }
 
 long long Location::integer(std::string_view word) const {
@@ -112,17 +151,39 @@ std::string quoted(std::string_view word) {
   return "'" + shown + (word.size() > longest ? "...'" : "'");
 }
 
+std::string lowercase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+std::string uppercase(std::string_view text) {
+  std::string upper(text);
+  for (char& c : upper)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return upper;
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(blanks);
   if (begin == text.npos) return {};
   return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
 }
 
-void append_words(std::string_view line, std::vector<std::string_view>& words) {
+bool is_not_finite(std::string_view word) {
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  if (word.starts_with("1.#")) return true;  // what the C library of MSVC prints
+  const std::string lower = lowercase(word);
+  return lower == "nan" || lower.starts_with("nan(") || lower == "inf" || lower == "infinity";
+}
+
+bool append_words(std::string_view line, std::vector<std::string_view>& words, char comment) {
   std::size_t end = 0;
   while (true) {
     const std::size_t begin = line.find_first_not_of(blanks, end);
-    if (begin == line.npos) return;
+    if (begin == line.npos) return true;
+    if (line[begin] == comment) return false;
     end = std::min(line.find_first_of(blanks, begin), line.size());
     words.push_back(line.substr(begin, end - begin));
   }
@@ -131,14 +192,16 @@ void append_words(std::string_view line, std::vector<std::string_view>& words) {
 LineReader::LineReader(std::string_view source, std::string_view text) : rest_(text), at_{source, 0} {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
+  if (rest_.ends_with('\x1a')) rest_.remove_suffix(1);  // how DOS ends a file
 }
 
 bool LineReader::next() {
   if (rest_.empty()) return false;
-  const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+  const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
+  const auto end = static_cast<std::size_t>(std::ranges::find_if(rest_, ends_line) - rest_.begin());
   line_ = rest_.substr(0, end);
-  if (line_.ends_with('\r')) line_.remove_suffix(1);
-  rest_.remove_prefix(std::min(end + 1, rest_.size()));
+  const bool two = rest_.substr(end).starts_with("\r\n");
+  rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
   ++at_.line;
   return true;
 }

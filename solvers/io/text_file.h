@@ -2,6 +2,7 @@
 // strict readers of this folder share. Numbers are read with std::from_chars, whatever the locale.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -11,8 +12,13 @@ namespace springstab {
 
 /// The whole file, or what comes through a pipe. Throws InputError where there is no text of at most 2^31 - 1
 /// bytes: missing, unreadable, a directory, a device (which may have no end), empty, with a zero byte (which
-/// no text has, but the hole of a sparse file does), or a pipe that nobody opens for writing within a second.
+/// no text has, but a binary file does and the hole of a sparse one), or a pipe that nobody opens for writing
+/// within a second.
 std::string read_text_file(const std::string& path);
+
+/// "the file is binary, expected text: ..." with what makes text of it, where its beginning tells the format;
+/// else that it has a zero byte.
+std::string binary_file_message(std::string_view beginning);
 
 /// A line (from 1) of a source; what is read from it fails with an InputError that names it.
 struct Location {
@@ -21,8 +27,13 @@ struct Location {
 
   [[noreturn]] void fail(const std::string& message) const;
 
-  /// `word` as a finite number: "1", "+.5", "-2e-3", never "inf", "0x1" or "1,5".
-  double real(std::string_view word) const;
+  /// `word` as a finite number: "1", "+.5", "-2e-3", never "inf", "1.#QNAN", "0x1" or "1,5". One that is too
+  /// small for double precision is 0.
+  double real(std::string_view word) const { return real_shown_as(word, word); }
+  /// The same, with exponents as Fortran writes them, too: "1D2", "1d2", "1q2" and "1.5-103".
+  double fortran_real(std::string_view word) const;
+  /// `number`, which messages quote as `word`.
+  double real_shown_as(std::string_view number, std::string_view word) const;
   /// `word` as a decimal integer.
   long long integer(std::string_view word) const;
 };
@@ -30,13 +41,28 @@ struct Location {
 /// `word` in quotes as a message can show it: shortened, in printable ASCII.
 std::string quoted(std::string_view word);
 
+/// The text with its ASCII letters in one case.
+std::string lowercase(std::string_view text);
+std::string uppercase(std::string_view text);
+
+/// Whether a list holds a value.
+template <class Values, class Value>
+bool is_among(const Values& values, const Value& value) {
+  return std::ranges::find(values, value) != values.end();
+}
+
 /// `text` without its leading and trailing blanks.
 std::string_view trimmed(std::string_view text);
 
-/// Appends the blank-separated words of `line`, as views into it.
-void append_words(std::string_view line, std::vector<std::string_view>& words);
+/// Whether `word` is how some program writes what is no finite number: "nan", "-inf", "1.#IND00".
+bool is_not_finite(std::string_view word);
 
-/// Walks through a text line by line. Lines end in LF or CR LF; a UTF-8 byte order mark is skipped.
+/// Appends the blank-separated words of `line`, as views into it, up to one that begins with the sign of a
+/// comment: within a word that sign begins none. Returns whether there was no comment.
+bool append_words(std::string_view line, std::vector<std::string_view>& words, char comment = '\n');
+
+/// Walks through a text line by line. Lines end in LF, CR LF or CR; a UTF-8 byte order mark and a final
+/// Ctrl-Z are skipped.
 /// Source and text must outlive the reader.
 class LineReader {
  public:

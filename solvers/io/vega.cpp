@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "solvers/io/tet_builder.h"
+#include "solvers/io/mesh_builder.h"
 
 namespace springstab {
 namespace {
@@ -22,30 +22,35 @@ class VegaReader {
       } else if (section == "*ELEMENTS") {
         more = elements();
       } else if (section == "*MATERIAL" || section == "*REGION" || section == "*SET") {
-        while ((more = next_words()) && !words_.front().starts_with('*')) {
+        while ((more = next_words()) && (!words_.front().starts_with('*') || words_.front() == "*INCLUDE")) {
         }
+      } else if (section == "*INCLUDE") {
+        included();
       } else {
         at.fail("unknown section " + quoted(section) +
                 ", expected *VERTICES, *ELEMENTS, *MATERIAL, *REGION or *SET");
       }
     }
-    return builder_.finish("a section *ELEMENTS of kind TET");
+    return std::get<TetMesh>(std::move(builder_).finish("a section *ELEMENTS of kind TET"));
   }
 
  private:
   /// The next line that is neither blank nor a comment; false at the end.
   bool next_words() {
     words_.clear();
-    while (words_.empty() && lines_.next()) {
-      const std::string_view line = lines_.line();
-      append_words(line.substr(0, line.find('#')), words_);
-    }
+    while (words_.empty() && lines_.next()) append_words(lines_.line(), words_, '#');
     return !words_.empty();
   }
 
+  [[noreturn]] void included() const {
+    lines_.at().fail("vertices or elements of another file (" + quoted(lines_.line()) +
+                     "), expected them in this one, in place of this line");
+  }
+
   void expect_line(const std::string& what) {
-    if (!next_words() || words_.front().starts_with('*'))
-      lines_.at().fail("no " + what + ", expected them here");
+    const bool more = next_words();
+    if (more && words_.front() == "*INCLUDE") included();
+    if (!more || words_.front().starts_with('*')) lines_.at().fail("no " + what + ", expected them here");
   }
 
   /// Reads the lines of a section, as many as announced; true if another section follows.
@@ -57,6 +62,7 @@ class VegaReader {
       line(lines_.at());
       ++found;
     }
+    if (more && words_.front() == "*INCLUDE") included();
     check_count(lines_.at(), things, found, announced);
     return more;
   }
@@ -101,7 +107,7 @@ class VegaReader {
   }
 
   LineReader lines_;
-  TetBuilder builder_;
+  MeshBuilder builder_;
   std::vector<std::string_view> words_;
 };
 

@@ -9,15 +9,10 @@
 #include "solvers/linear/block_sparse_matrix.h"
 #include "solvers/linear/block_ssor.h"
 #include "solvers/linear/conjugate_gradient.h"
+#include "solvers/linear/rayleigh_damping.h"
 #include "solvers/system.h"
 
 namespace springstab {
-
-/// D = d0 M + alpha K (paper Eq. 28 times M).
-struct RayleighDamping {
-  double d0 = 0;     // [1/s]
-  double alpha = 0;  // [s]
-};
 
 /// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone
 /// an acceleration is one block product, K (x + alpha v). Solves by preconditioned conjugate gradients or by

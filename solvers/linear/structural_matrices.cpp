@@ -93,6 +93,26 @@ bool is_definite(const SparseMatrix& a) {
   return factor.info() == Eigen::Success;
 }
 
+// The alpha of D's rows of massless unknowns, which must be alpha >= 0 times K's to 1e-10 of the row: then
+// what the unknowns are away from where K alone would hold them decays like exp(-t/alpha) and never comes
+// back.
+double massless_alpha(const StructuralMatrices& s, const std::vector<Eigen::Index>& massless) {
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(s.size());
+  const Eigen::VectorXd damped = s.damping.cwiseAbs() * ones, stiff = s.stiffness.cwiseAbs() * ones;
+  double alpha = 0;
+  for (Eigen::Index i = 0; i < s.size(); ++i)
+    if (massless[i] >= 0 && stiff[i] > 0) alpha = std::max(alpha, damped[i] / stiff[i]);
+  const Eigen::VectorXd rest = SparseMatrix(s.damping - alpha * s.stiffness).cwiseAbs() * ones;
+  Eigen::Index wrong = -1;
+  for (Eigen::Index i = 0; i < s.size(); ++i)
+    if (massless[i] >= 0 && rest[i] > 1e-10 * damped[i] && (wrong < 0 || damped[wrong] == 0)) wrong = i;
+  if (wrong >= 0)
+    throw std::invalid_argument("unknown " + std::to_string(wrong + 1) + " has " +
+                                (damped[wrong] > 0 ? "damping" : "stiffness without damping") +
+                                " but no mass, expected D = alpha K in the rows of all massless unknowns");
+  return alpha;
+}
+
 void condense(StructuralMatrices& s) {
   const Eigen::Index n = s.size();
   std::vector<Eigen::Index> heavy(n, -1), massless(n, -1);
@@ -105,13 +125,7 @@ void condense(StructuralMatrices& s) {
     throw std::invalid_argument("eliminating " + std::to_string(b) +
                                 " massless unknowns would fill a matrix of " + std::to_string(a) +
                                 " unknowns, expected at most " + std::to_string(largest_condensed));
-  if (s.has_damping()) {
-    const Eigen::VectorXd damped = s.damping.cwiseAbs() * Eigen::VectorXd::Ones(n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      if (massless[i] >= 0 && damped[i] > 0)
-        throw std::invalid_argument("unknown " + std::to_string(i + 1) +
-                                    " has damping but no mass, expected massless unknowns without damping");
-  }
+  const double alpha = s.has_damping() ? massless_alpha(s, massless) : 0;
 
   const SparseMatrix k_ab = extract(s.stiffness, heavy, massless, a, b);
   const SparseMatrix k_bb = extract(s.stiffness, massless, massless, b, b);
@@ -120,16 +134,17 @@ void condense(StructuralMatrices& s) {
                                 " massless unknowns is not positive definite, expected that they are held");
   const Eigen::SimplicialLLT<SparseMatrix> factor(k_bb);
   const Eigen::MatrixXd correction = k_ab * factor.solve(Eigen::MatrixXd(k_ab.transpose()));
-  const SparseMatrix k_aa = extract(s.stiffness, heavy, heavy, a, a);
-  s.stiffness = k_aa - SparseMatrix((0.5 * (correction + correction.transpose())).sparseView(0.0, 0.0));
+  const SparseMatrix removed = (0.5 * (correction + correction.transpose())).sparseView(0.0, 0.0);
+  s.stiffness = extract(s.stiffness, heavy, heavy, a, a) - removed;
   s.mass = extract(s.mass, heavy, heavy, a, a);
-  if (s.has_damping()) s.damping = extract(s.damping, heavy, heavy, a, a);
+  if (s.has_damping()) s.damping = extract(s.damping, heavy, heavy, a, a) - alpha * removed;
   s.condensed = b;
+  if (alpha > 0) s.condensed_rate = 1 / alpha;
 }
 
 // Of K and D only symmetric ones are accepted, unless they may be `any`.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                           const SparseMatrix& damping, bool any) {
+                           const SparseMatrix& damping, const RayleighDamping& more, bool any) {
   const Eigen::Index n = stiffness.rows();
   if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
   StructuralMatrices s;
@@ -141,6 +156,10 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
     s.mass.setIdentity();
   }
   if (damping.size() > 0) s.damping = checked(damping, "damping", n, any ? &s.symmetric : nullptr);
+  if (more.d0 != 0 || more.alpha != 0) {
+    const SparseMatrix added = more.d0 * s.mass + more.alpha * s.stiffness;
+    s.damping = s.damping.size() > 0 ? SparseMatrix(s.damping + added) : added;
+  }
   for (Eigen::Index i = 0; i < n; ++i)
     if (s.mass.coeff(i, i) < 0) {
       std::ostringstream message;
@@ -175,13 +194,13 @@ bool is_diagonal(const SparseMatrix& a) {
 }
 
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                           const SparseMatrix& damping) {
-  return prepare(stiffness, mass, damping, false);
+                           const SparseMatrix& damping, const RayleighDamping& more) {
+  return prepare(stiffness, mass, damping, more, false);
 }
 
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                                        const SparseMatrix& damping) {
-  return prepare(stiffness, mass, damping, true);
+                                        const SparseMatrix& damping, const RayleighDamping& more) {
+  return prepare(stiffness, mass, damping, more, true);
 }
 
 }  // namespace springstab

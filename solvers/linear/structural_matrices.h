@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+
 #include <span>
+#include "solvers/linear/rayleigh_damping.h"
 
 namespace springstab {
 
@@ -12,6 +14,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 struct StructuralMatrices {
   SparseMatrix stiffness, mass, damping;
   Eigen::Index condensed = 0;  // massless unknowns that were eliminated
+  double condensed_rate = 0;   // at which their own motion decayed [1/s]; 0 where nothing damped them
   bool symmetric = true;       // K and D are; M always is
 
   Eigen::Index size() const { return stiffness.rows(); }
@@ -20,15 +23,17 @@ struct StructuralMatrices {
 
 /// Checks the matrices (square, of one size, finite, a_ij and a_ji apart by at most 1e-10 of the larger or of
 /// √(a_ii a_jj); their mean replaces both) and eliminates unknowns whose row of M is zero: they follow,
-/// K ← K_aa - K_ab K_bb⁻¹ K_ba, which needs K_bb positive definite and no damping on them. An empty M stands
-/// for the unit matrix. Throws std::invalid_argument that names the matrix and the rule.
+/// K ← K_aa - K_ab K_bb⁻¹ K_ba and likewise D, which needs K_bb positive definite and D = alpha K in their
+/// rows, with one alpha >= 0: what they are away from there decays at the rate 1/alpha, whatever the others
+/// do. An empty M stands for the unit matrix. Throws std::invalid_argument that names the matrix and the
+/// rule.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
-                           const SparseMatrix& damping = {});
+                           const SparseMatrix& damping = {}, const RayleighDamping& more = {});
 
 /// The same for any K and D, as of follower forces and rotors; where one is not symmetric it stays so, and
 /// every unknown needs mass.
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass = {},
-                                        const SparseMatrix& damping = {});
+                                        const SparseMatrix& damping = {}, const RayleighDamping& more = {});
 
 /// M of particles with three unknowns each: diagonal; one mass per particle [kg].
 SparseMatrix lumped_mass(std::span<const double> mass);

@@ -8,6 +8,12 @@
 
 namespace springstab {
 
+/// What a reader left out of a file, for people to know.
+struct FileNote {
+  long line;  // of the first such thing
+  std::string text;
+};
+
 /// Polygons over vertices. Face f has the vertices `face(f)`, in order around it, indices from 0.
 /// The source lines let an error that is found later (a zero-length edge, say) still name its line.
 struct Mesh {
@@ -21,6 +27,8 @@ struct Mesh {
   /// Texture coordinates of the corners: one per entry of face_vertices, or none at all where the file leaves
   /// a corner without. A vertex may have several, at a seam.
   std::vector<Eigen::Vector2d> corner_uv{};
+
+  std::vector<FileNote> notes{};
 
   int faces() const { return static_cast<int>(face_offsets.size()) - 1; }
   std::span<const int> face(int f) const {

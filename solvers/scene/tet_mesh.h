@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "solvers/scene/mesh.h"
+
 namespace springstab {
 
 /// Tetrahedra over vertices, indices from 0. The source lines let an error that is found later still name its
@@ -16,6 +18,7 @@ struct TetMesh {
   std::string source;             // the file's name, for messages
   std::vector<long> vertex_line;  // one per vertex
   std::vector<long> tet_line;     // one per tetrahedron
+  std::vector<FileNote> notes{};
 
   /// Six times the signed volume [m³]: positive where (x1 - x0, x2 - x0, x3 - x0) is right-handed.
   double six_volumes(int tet) const;

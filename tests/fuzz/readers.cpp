@@ -11,6 +11,7 @@
 #include "solvers/io/harwell_boeing.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_market.h"
+#include "solvers/io/mesh_builder.h"
 #include "solvers/io/obj.h"
 #include "solvers/io/vega.h"
 #include "solvers/io/vtk.h"
@@ -40,6 +41,13 @@ void check_matrix(const Eigen::SparseMatrix<double>& matrix) {
   }
 }
 
+void check_notes(const std::vector<FileNote>& notes) {
+  for (const FileNote& note : notes)
+    require(note.line > 0 && !note.text.empty() &&
+                std::ranges::none_of(note.text, [](unsigned char c) { return c < ' ' || c == 127; }),
+            "a note has a line and is printable");
+}
+
 void check_mesh(const Mesh& mesh) {
   require(!mesh.vertices.empty() && mesh.faces() > 0, "a mesh has vertices and faces");
   for (const Eigen::Vector3d& vertex : mesh.vertices) require(vertex.allFinite(), "vertices are finite");
@@ -47,6 +55,7 @@ void check_mesh(const Mesh& mesh) {
   require(mesh.corner_uv.empty() || mesh.corner_uv.size() == mesh.face_vertices.size(), "one for a corner");
   require(mesh.vertex_line.size() == mesh.vertices.size(), "each vertex has a line");
   require(static_cast<int>(mesh.face_line.size()) == mesh.faces(), "each face has a line");
+  check_notes(mesh.notes);
   require(mesh.face_offsets.front() == 0 && std::ranges::is_sorted(mesh.face_offsets), "offsets ascend");
   require(mesh.face_offsets.back() == static_cast<int>(mesh.face_vertices.size()), "corners have a face");
   require(all_in_range(mesh.face_vertices, mesh.vertices.size()), "corners are vertices");
@@ -57,8 +66,14 @@ void check_tets(const TetMesh& mesh) {
   for (const Eigen::Vector3d& vertex : mesh.vertices) require(vertex.allFinite(), "vertices are finite");
   require(mesh.vertex_line.size() == mesh.vertices.size(), "each vertex has a line");
   require(mesh.tet_line.size() == mesh.tets.size(), "each tetrahedron has a line");
+  check_notes(mesh.notes);
   for (const auto& tet : mesh.tets)
     require(all_in_range({tet.begin(), tet.end()}, mesh.vertices.size()), "corners are vertices");
+}
+
+void check_any(const AnyMesh& mesh) {
+  if (const TetMesh* solid = std::get_if<TetMesh>(&mesh)) return check_tets(*solid);
+  check_mesh(std::get<Mesh>(mesh));
 }
 
 void check_scene(const SceneDescription& scene) {
@@ -93,20 +108,21 @@ void check_refusal(std::string_view message, std::string_view text) {
   long line = 0;
   const auto end = std::from_chars(message.data(), message.data() + message.size(), line).ptr;
   require(std::string_view(end, message.data() + message.size()).starts_with(": "), "no line" + quoted);
-  require(line >= 1 && line <= 1 + std::ranges::count(text, '\n'), "no such line" + quoted);
+  require(line >= 1 && line <= 1 + std::ranges::count(text, '\n') + std::ranges::count(text, '\r'),
+          "no such line" + quoted);
 }
 
 }  // namespace
 
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all{
-      {"gmsh", [](std::string_view text) { check_tets(parse_gmsh(source, text)); }},
+      {"gmsh", [](std::string_view text) { check_any(parse_gmsh(source, text)); }},
       {"harwell_boeing", [](std::string_view text) { check_matrix(parse_harwell_boeing(source, text)); }},
       {"matrix_market", [](std::string_view text) { check_matrix(parse_matrix_market(source, text)); }},
       {"obj", [](std::string_view text) { check_mesh(parse_obj(source, text)); }},
       {"scene", [](std::string_view text) { check_scene(parse_scene(source, text)); }},
       {"vega", [](std::string_view text) { check_tets(parse_vega(source, text)); }},
-      {"vtk", [](std::string_view text) { check_tets(parse_vtk(source, text)); }},
+      {"vtk", [](std::string_view text) { check_any(parse_vtk(source, text)); }},
   };
   return all;
 }

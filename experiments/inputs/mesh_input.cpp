@@ -1,7 +1,4 @@
-#include "experiments/inputs/mesh_file.h"
-
-#include "solvers/io/obj.h"
-#include "solvers/io/tet_file.h"
+#include "experiments/inputs/mesh_input.h"
 
 namespace springstab {
 
@@ -16,19 +13,18 @@ std::vector<Eigen::Vector3d> file_vertices(const MeshFile& file,
   return all;
 }
 
-SurfaceInput read_surface(const std::string& path) {
-  Mesh original = read_obj(path);
+SurfaceInput surface_input(Mesh original) {
   Faces faces;
   for (int f = 0; f < original.faces(); ++f)
     faces.emplace_back(original.face(f).begin(), original.face(f).end());
   RepairedMesh mended = repaired(original);
   return {std::move(mended.mesh),
-          {path, false, std::move(original.vertices), std::move(mended.repair)},
+          {std::move(original.source), false, std::move(original.vertices), std::move(mended.repair),
+           std::move(original.notes)},
           std::move(faces)};
 }
 
-SolidInput read_solid(const std::string& path) {
-  TetMesh original = read_tets(path);
+SolidInput solid_input(TetMesh original) {
   auto [mesh, repair] = repaired(original);
   std::vector<int> of_file(mesh.vertices.size());  // the first vertex that each one was
   for (std::size_t v = repair.vertex.size(); v-- > 0;)
@@ -38,7 +34,10 @@ SolidInput read_solid(const std::string& path) {
     for (int& v : face) v = of_file[v];
     faces.push_back(std::move(face));
   }
-  return {std::move(mesh), {path, true, std::move(original.vertices), std::move(repair)}, std::move(faces)};
+  return {std::move(mesh),
+          {std::move(original.source), true, std::move(original.vertices), std::move(repair),
+           std::move(original.notes)},
+          std::move(faces)};
 }
 
 }  // namespace springstab

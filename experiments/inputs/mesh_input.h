@@ -22,6 +22,7 @@ struct MeshFile {
   bool solid;                             // of tetrahedra
   std::vector<Eigen::Vector3d> vertices;  // [m]
   MeshRepair repair;
+  std::vector<FileNote> notes;  // on what its reader left out
 
   // of a cloth of triangles:
   std::optional<RestShape> rest_shape{};
@@ -39,13 +40,13 @@ struct SurfaceInput {
   MeshFile file;
   Faces faces;  // of the file
 };
-SurfaceInput read_surface(const std::string& path);
+SurfaceInput surface_input(Mesh original);
 
 struct SolidInput {
   TetMesh mesh;  // mended
   MeshFile file;
   Faces faces;  // of its surface
 };
-SolidInput read_solid(const std::string& path);
+SolidInput solid_input(TetMesh original);
 
 }  // namespace springstab

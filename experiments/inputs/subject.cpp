@@ -73,10 +73,11 @@ auto naming(const std::string& source, Build build) {
 RayleighDamping parse_rayleigh(const std::string& words) {
   const Location at{"--rayleigh", 0};
   const std::size_t comma = words.find(',');
-  if (comma == std::string::npos) at.fail(quoted(words) + " has no comma, expected d0,alpha like 0.5,1e-4");
+  if (comma == std::string::npos)
+    at.fail(springstab::quoted(words) + " has no comma, expected d0,alpha like 0.5,1e-4");
   const RayleighDamping damping{at.real(words.substr(0, comma)), at.real(words.substr(comma + 1))};
   if (damping.d0 < 0 || damping.alpha < 0)
-    at.fail(quoted(words) + " is negative, expected d0 and alpha from 0");
+    at.fail(springstab::quoted(words) + " is negative, expected d0 and alpha from 0");
   return damping;
 }
 

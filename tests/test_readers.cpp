@@ -475,8 +475,8 @@ BOOST_AUTO_TEST_CASE(an_obj_file_is_read_with_all_that_other_programs_write) {
       BOOST_REQUIRE_EQUAL(mesh.notes.size(), c.notes.size());
       for (const auto& [line, text] : c.notes)
         BOOST_TEST(std::ranges::any_of(mesh.notes,
-                                       [&](const springstab::FileNote& note) {
-                                         return note.line == line && note.text.find(text) != note.text.npos;
+                                       [&, at = line, words = text](const springstab::FileNote& note) {
+                                         return note.line == at && note.text.find(words) != note.text.npos;
                                        }),
                    text);
       BOOST_TEST(mesh.corner_uv.size() == (c.text.find("vt 1 0") != c.text.npos ? 4U : 0U));

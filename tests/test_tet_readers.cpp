@@ -415,12 +415,12 @@ BOOST_AUTO_TEST_CASE(binary_files_are_refused_with_what_makes_text_of_them) {
         {"a.veg", "\x1f\x8b\b" + zeros, "`gunzip`"},
         {"a.veg", "\x1f\x8b\b\1", "`gunzip`"},
         {"a.obj", "v " + zeros, "a zero byte, expected text in ASCII"}})
-    BOOST_CHECK_EXCEPTION(
-        read_mesh(folder.file(name, text).string()), InputError, [&](const InputError& error) {
-          const std::string message = error.what();
-          return (message.find("the file is binary") == message.npos) == (name == "a.obj") &&
-                 message.find(remedy) != message.npos;
-        });
+    BOOST_CHECK_EXCEPTION(read_mesh(folder.file(name, text).string()), InputError,
+                          [&, is_mesh = name == "a.obj", words = remedy](const InputError& error) {
+                            const std::string message = error.what();
+                            return (message.find("the file is binary") == message.npos) == is_mesh &&
+                                   message.find(words) != message.npos;
+                          });
 }
 
 BOOST_AUTO_TEST_CASE(meshes_that_were_read_wrongly_or_refused) {
@@ -436,8 +436,8 @@ BOOST_AUTO_TEST_CASE(meshes_that_were_read_wrongly_or_refused) {
         {"bin.msh", "binary"},
         {"bin.vtk", "binary"},
         {"veg_qnan_read_as_1.veg", "veg_qnan_read_as_1.veg:6: '1.#QNAN' is not finite"}})
-    BOOST_CHECK_EXCEPTION(read(name), InputError, [&](const InputError& error) {
-      return std::string(error.what()).find(message) != std::string::npos;
+    BOOST_CHECK_EXCEPTION(read(name), InputError, [words = message](const InputError& error) {
+      return std::string(error.what()).find(words) != std::string::npos;
     });
 }
 

@@ -415,12 +415,16 @@ BOOST_AUTO_TEST_CASE(binary_files_are_refused_with_what_makes_text_of_them) {
         {"a.veg", "\x1f\x8b\b" + zeros, "`gunzip`"},
         {"a.veg", "\x1f\x8b\b\1", "`gunzip`"},
         {"a.obj", "v " + zeros, "a zero byte, expected text in ASCII"}})
-    BOOST_CHECK_EXCEPTION(read_mesh(folder.file(name, text).string()), InputError,
-                          [&, is_mesh = name == "a.obj", words = remedy](const InputError& error) {
-                            const std::string message = error.what();
-                            return (message.find("the file is binary") == message.npos) == is_mesh &&
-                                   message.find(words) != message.npos;
-                          });
+    BOOST_TEST_CONTEXT(name << ", " << remedy) {
+      const bool told_as_binary = name != "a.obj";
+      const std::string words = remedy;
+      const auto is_right = [&](const InputError& error) {
+        const std::string message = error.what();
+        return (message.find("the file is binary") != message.npos) == told_as_binary &&
+               message.find(words) != message.npos;
+      };
+      BOOST_CHECK_EXCEPTION(read_mesh(folder.file(name, text).string()), InputError, is_right);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(meshes_that_were_read_wrongly_or_refused) {

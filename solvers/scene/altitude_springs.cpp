@@ -51,66 +51,46 @@ Altitudes::Altitudes(const std::vector<Altitude>& altitudes, int free_count)
 
 void Altitudes::add_gradient_products(const ParticleField& x, double factor, const BlockPlaces<4>& places,
                                       BlockSparseMatrix& matrix) const {
-  CornerVectors<4> at;
-  CornerBlocks<4> blocks;
-  for (int b = 0; b < elements_.batches(); ++b) {
-    elements_.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  elements_.add_blocks(x, places, matrix, [&](int) {
+    return [factor](const CornerVectors<4>& at, int i, CornerBlocks<4>& blocks) SPRINGSTAB_LANE {
       const AltitudeShape s = altitude_shape(at, i);
       const Mat3 nn = outer(factor * s.n, s.n);
       const double rho[4] = {1, -s.w1, -s.w2, -s.w3};
       for (int c = 0; c < 4; ++c)
         for (int d = c; d < 4; ++d) blocks.set(c, d, i, rho[c] * rho[d] * nn);
-    }
-    places.add(elements_, b, blocks, matrix);
-  }
+    };
+  });
 }
 
 AltitudeSprings::AltitudeSprings(std::shared_ptr<const Altitudes> altitudes, double stiffness)
     : altitudes_(std::move(altitudes)), stiffness_(stiffness) {}
 
 double AltitudeSprings::energy(const ParticleField& x) const {
-  const Elements<4>& elements = altitudes_->elements();
-  CornerVectors<4> at;
-  double squared[batch_size];
-  double sum = 0;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = altitudes_->rest(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  const double squares = altitudes_->elements().sum(x, [&](int batch) {
+    return [&rest = altitudes_->rest(batch)](const CornerVectors<4>& at, int i) SPRINGSTAB_LANE {
       const double stretch = altitude_shape(at, i).h - rest.h[i];
-      squared[i] = stretch * stretch;
-    }
-    for (std::size_t i = 0; i < elements.in_batch(b).size(); ++i) sum += squared[i];
-  }
-  return stiffness_ * sum / 2;
+      return stretch * stretch;
+    };
+  });
+  return stiffness_ * squares / 2;
 }
 
 void AltitudeSprings::add_force(const ParticleField& x, double* force) const {
-  const Elements<4>& elements = altitudes_->elements();
-  const double stiffness = stiffness_;
-  CornerVectors<4> at, out;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = altitudes_->rest(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  altitudes_->elements().add_vectors(x, force, [&](int batch) {
+    return [&rest = altitudes_->rest(batch), stiffness = stiffness_](const CornerVectors<4>& at, int i,
+                                                                     CornerVectors<4>& out) SPRINGSTAB_LANE {
       const AltitudeShape s = altitude_shape(at, i);
       set(out, i, -stiffness * (s.h - rest.h[i]), s);
-    }
-    elements.scatter(out, b, force);
-  }
+    };
+  });
 }
 
 void AltitudeSprings::add_stiffness_times(const ParticleField& x, const double* u, double scale,
                                           double* out) const {
-  const Elements<4>& elements = altitudes_->elements();
-  const double stiffness = scale * stiffness_;
-  CornerVectors<4> at, direction, product;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = altitudes_->rest(b);
-    elements.gather(x, b, at);
-    elements.gather_free(u, b, direction);
-    for (int i = 0; i < batch_size; ++i) {
+  altitudes_->elements().add_vectors(x, u, out, [&](int batch) {
+    return [&rest = altitudes_->rest(batch), stiffness = scale * stiffness_](
+               const CornerVectors<4>& at, const CornerVectors<4>& direction, int i,
+               CornerVectors<4>& product) SPRINGSTAB_LANE {
       const AltitudeShape s = altitude_shape(at, i);
       const double stretched = stiffness * (s.h - rest.h[i]);
       const Vec3 r = relative(s, direction, i);
@@ -123,20 +103,14 @@ void AltitudeSprings::add_stiffness_times(const ParticleField& x, const double* 
       product.set(1, i, -s.w1 * on_r - stretched * dot(s.b1, q) * s.n);
       product.set(2, i, -s.w2 * on_r - stretched * dot(s.b2, q) * s.n);
       product.set(3, i, -s.w3 * on_r - stretched * dot(s.b3, q) * s.n);
-    }
-    elements.scatter(product, b, out);
-  }
+    };
+  });
 }
 
 void AltitudeSprings::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
-  const Elements<4>& elements = altitudes_->elements();
-  const double k = stiffness_;
-  CornerVectors<4> at;
-  CornerBlocks<4> blocks;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = altitudes_->rest(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  altitudes_->elements().add_blocks(x, places_, stiffness, [&](int batch) {
+    return [&rest = altitudes_->rest(batch), k = stiffness_](const CornerVectors<4>& at, int i,
+                                                             CornerBlocks<4>& blocks) SPRINGSTAB_LANE {
       const AltitudeShape s = altitude_shape(at, i);
       const double stretched = k * (s.h - rest.h[i]);
       const Mat3 nn = outer(s.n, s.n);
@@ -148,9 +122,8 @@ void AltitudeSprings::add_stiffness(const ParticleField& x, BlockSparseMatrix& s
               c, d, i,
               (k * rho[c] * rho[d] - stretched * s.h * dot(beta[c], beta[d])) * nn +
                   -(outer((stretched * rho[c]) * beta[d], s.n) + outer(s.n, (stretched * rho[d]) * beta[c])));
-    }
-    places_.add(elements, b, blocks, stiffness);
-  }
+    };
+  });
 }
 
 void AltitudeSprings::add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
@@ -161,18 +134,13 @@ AltitudeDamping::AltitudeDamping(std::shared_ptr<const Altitudes> altitudes, dou
     : altitudes_(std::move(altitudes)), damping_(damping) {}
 
 void AltitudeDamping::add_force(const ParticleField& x, const ParticleField& v, double* force) const {
-  const Elements<4>& elements = altitudes_->elements();
-  const double damping = damping_;
-  CornerVectors<4> at, velocity, out;
-  for (int b = 0; b < elements.batches(); ++b) {
-    elements.gather(x, b, at);
-    elements.gather(v, b, velocity);
-    for (int i = 0; i < batch_size; ++i) {
+  altitudes_->elements().add_vectors(x, v, force, [&](int) {
+    return [damping = damping_](const CornerVectors<4>& at, const CornerVectors<4>& velocity, int i,
+                                CornerVectors<4>& out) SPRINGSTAB_LANE {
       const AltitudeShape s = altitude_shape(at, i);
       set(out, i, -damping * dot(s.n, relative(s, velocity, i)), s);
-    }
-    elements.scatter(out, b, force);
-  }
+    };
+  });
 }
 
 void AltitudeDamping::add_damping(const ParticleField& x, BlockSparseMatrix& damping) const {

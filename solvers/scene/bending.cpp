@@ -20,48 +20,32 @@ Bending::Bending(std::shared_ptr<const HingeAngles> hinges, double stiffness)
     : hinges_(std::move(hinges)), stiffness_(stiffness) {}
 
 double Bending::energy(const ParticleField& x) const {
-  const Elements<4>& elements = hinges_->elements();
-  CornerVectors<4> at;
-  double squared[batch_size];
-  double sum = 0;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = hinges_->rest_angles(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  const double squares = hinges_->elements().sum(x, [&](int batch) {
+    return [&rest = hinges_->rest_angles(batch)](const CornerVectors<4>& at, int i) SPRINGSTAB_LANE {
       const double angle = rest.turned(hinge_shape(at, i), i);
-      squared[i] = angle * angle;
-    }
-    for (std::size_t i = 0; i < elements.in_batch(b).size(); ++i) sum += squared[i];
-  }
-  return stiffness_ * sum / 2;
+      return angle * angle;
+    };
+  });
+  return stiffness_ * squares / 2;
 }
 
 void Bending::add_force(const ParticleField& x, double* force) const {
-  const Elements<4>& elements = hinges_->elements();
-  const double stiffness = stiffness_;
-  CornerVectors<4> at, out;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = hinges_->rest_angles(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  hinges_->elements().add_vectors(x, force, [&](int batch) {
+    return [&rest = hinges_->rest_angles(batch), stiffness = stiffness_](
+               const CornerVectors<4>& at, int i, CornerVectors<4>& out) SPRINGSTAB_LANE {
       const HingeShape h = hinge_shape(at, i);
       set(out, i, -stiffness * rest.turned(h, i), gradient(h));
-    }
-    elements.scatter(out, b, force);
-  }
+    };
+  });
 }
 
 // out += scale · K u, and minus the energy's gradient where the force is wanted too.
 template <bool with_force>
 void Bending::add_products(const ParticleField& x, const double* u, double scale, double* out) const {
-  const Elements<4>& elements = hinges_->elements();
-  const double force = -stiffness_, stiffness = scale * stiffness_;
-  CornerVectors<4> at, direction, product;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = hinges_->rest_angles(b);
-    elements.gather(x, b, at);
-    elements.gather_free(u, b, direction);
-    for (int i = 0; i < batch_size; ++i) {
+  hinges_->elements().add_vectors(x, u, out, [&](int batch) {
+    return [&rest = hinges_->rest_angles(batch), force = -stiffness_, stiffness = scale * stiffness_](
+               const CornerVectors<4>& at, const CornerVectors<4>& direction, int i,
+               CornerVectors<4>& product) SPRINGSTAB_LANE {
       const HingeShape h = hinge_shape(at, i);
       const HingeGradient g = gradient(h);
       const Vec3 u0 = direction.get(0, i), u1 = direction.get(1, i), de = u1 - u0;
@@ -82,9 +66,8 @@ void Bending::add_products(const ParticleField& x, const double* u, double scale
       product.set(3, i, along * g.x3 + side(h.b, direction.get(3, i)));
       product.set(0, i, f0);
       product.set(1, i, f1);
-    }
-    elements.scatter(product, b, out);
-  }
+    };
+  });
 }
 
 void Bending::add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const {
@@ -98,14 +81,9 @@ void Bending::add_damped_force(const ParticleField& x, const double* v, double a
 Couplings Bending::couplings() const { return hinges_->elements().couplings(); }
 
 void Bending::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {
-  const Elements<4>& elements = hinges_->elements();
-  const double k = stiffness_;
-  CornerVectors<4> at;
-  CornerBlocks<4> blocks;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& rest = hinges_->rest_angles(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  hinges_->elements().add_blocks(x, places_, stiffness, [&](int batch) {
+    return [&rest = hinges_->rest_angles(batch), k = stiffness_](const CornerVectors<4>& at, int i,
+                                                                 CornerBlocks<4>& blocks) SPRINGSTAB_LANE {
       const HingeShape shape = hinge_shape(at, i);
       const HingeGradient g = gradient(shape);
       const double turned = k * rest.turned(shape, i);
@@ -132,9 +110,8 @@ void Bending::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness
       blocks.set(2, 2, i, k22);
       blocks.set(2, 3, i, k23);
       blocks.set(3, 3, i, k33);
-    }
-    places_.add(elements, b, blocks, stiffness);
-  }
+    };
+  });
 }
 
 void Bending::add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {

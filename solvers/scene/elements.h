@@ -1,6 +1,15 @@
 // What all terms made of elements share: elements of 2, 3 or 4 particles taken in batches, the coordinates of
 // their particles gathered so that a loop over a batch is vectorized by the compiler, forces and blocks
-// scattered back to the free particles. Knows no energy.
+// scattered back to the free particles. Knows no energy: a term brings what one element computes, for each
+// batch a function of the lane.
+//
+//     elements.add_vectors(x, force, [&](int batch) {
+//       return [&rest = rest_[batch], k = stiffness_](const auto& at, int lane, auto& vectors)
+//       SPRINGSTAB_LANE {
+//         const Vec3 pull = (k * (1 - rest[lane])) * (at.get(1, lane) - at.get(0, lane));
+//         vectors.set(0, lane, pull), vectors.set(1, lane, -pull);
+//       };
+//     });
 #pragma once
 
 #include <algorithm>
@@ -9,10 +18,15 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "solvers/scene/lane_math.h"
 #include "solvers/scene/terms.h"
+
+/// Stands behind the parameters of a lane's function: only where it is inlined into the loop over a batch is
+/// that vectorized.
+#define SPRINGSTAB_LANE __attribute__((always_inline))
 
 namespace springstab {
 
@@ -57,6 +71,9 @@ struct alignas(64) CornerBlocks {
     e[6][lane] = block.z.x, e[7][lane] = block.z.y, e[8][lane] = block.z.z;
   }
 };
+
+template <int corners>
+class BlockPlaces;
 
 /// Elements by their particles, in a scene's numbers: free ones first, `free_count` of them. Their order
 /// stays. The last batch is filled up with copies of the last element, which are computed and thrown away.
@@ -116,6 +133,69 @@ class Elements {
       for (int c = 0; c < corners; ++c)
         if (const int p = elements[lane][c]; is_free(p))
           for (int r = 0; r < 3; ++r) out[3 * static_cast<long>(p) + r] += vectors.component[3 * c + r][lane];
+  }
+
+  // The loops over all elements. `lane_of` is called with each batch and returns what computes an element, a
+  // function of its corners' places `at` and its lane. It keeps coefficients by value, lest they be read
+  // again for each lane.
+
+  /// Σ lane(at, i), in the order of the elements.
+  template <class LaneOf>
+  double sum(const ParticleField& x, const LaneOf& lane_of) const {
+    CornerVectors<corners> at;
+    double value[batch_size];
+    double sum = 0;
+    for (int b = 0; b < batches(); ++b) {
+      gather(x, b, at);
+      const auto lane = lane_of(b);
+      for (int i = 0; i < batch_size; ++i) value[i] = lane(at, i);
+      for (std::size_t i = 0; i < in_batch(b).size(); ++i) sum += value[i];
+    }
+    return sum;
+  }
+
+  /// out += the vectors that lane(at, i, vectors) sets at each corner.
+  template <class LaneOf>
+  void add_vectors(const ParticleField& x, double* out, const LaneOf& lane_of) const {
+    CornerVectors<corners> at, vectors;
+    for (int b = 0; b < batches(); ++b) {
+      gather(x, b, at);
+      const auto lane = lane_of(b);
+      for (int i = 0; i < batch_size; ++i) lane(at, i, vectors);
+      scatter(vectors, b, out);
+    }
+  }
+
+  /// The same by lane(at, u, i, vectors) with a second field: a ParticleField, or the free particles' alone
+  /// that is zero at the pinned ones.
+  template <class Field, class LaneOf>
+  void add_vectors(const ParticleField& x, const Field& field, double* out, const LaneOf& lane_of) const {
+    CornerVectors<corners> at, u, vectors;
+    for (int b = 0; b < batches(); ++b) {
+      gather(x, b, at);
+      if constexpr (std::is_same_v<Field, ParticleField>) {
+        gather(field, b, u);
+      } else {
+        gather_free(field, b, u);
+      }
+      const auto lane = lane_of(b);
+      for (int i = 0; i < batch_size; ++i) lane(at, u, i, vectors);
+      scatter(vectors, b, out);
+    }
+  }
+
+  /// matrix += the blocks that lane(at, i, blocks) sets between corners c <= d, at their places.
+  template <class LaneOf>
+  void add_blocks(const ParticleField& x, const BlockPlaces<corners>& places, BlockSparseMatrix& matrix,
+                  const LaneOf& lane_of) const {
+    CornerVectors<corners> at;
+    CornerBlocks<corners> blocks;
+    for (int b = 0; b < batches(); ++b) {
+      gather(x, b, at);
+      const auto lane = lane_of(b);
+      for (int i = 0; i < batch_size; ++i) lane(at, i, blocks);
+      places.add(*this, b, blocks, matrix);
+    }
   }
 
   /// The pairs of free particles within each element.

@@ -12,11 +12,8 @@ HingeAngles::HingeAngles(const std::vector<Hinge>& hinges, int free_count)
 
 void HingeAngles::add_gradient_products(const ParticleField& x, double factor, const BlockPlaces<4>& places,
                                         BlockSparseMatrix& matrix) const {
-  CornerVectors<4> at;
-  CornerBlocks<4> blocks;
-  for (int b = 0; b < elements_.batches(); ++b) {
-    elements_.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  elements_.add_blocks(x, places, matrix, [&](int) {
+    return [factor](const CornerVectors<4>& at, int i, CornerBlocks<4>& blocks) SPRINGSTAB_LANE {
       const HingeGradient g = gradient(hinge_shape(at, i));
       const Vec3 k0 = factor * g.x0, k1 = factor * g.x1;
       blocks.set(0, 0, i, outer(k0, g.x0));
@@ -29,9 +26,8 @@ void HingeAngles::add_gradient_products(const ParticleField& x, double factor, c
       blocks.set(2, 2, i, outer(factor * g.x2, g.x2));
       blocks.set(2, 3, i, outer(factor * g.x2, g.x3));
       blocks.set(3, 3, i, outer(factor * g.x3, g.x3));
-    }
-    places.add(elements_, b, blocks, matrix);
-  }
+    };
+  });
 }
 
 }  // namespace springstab

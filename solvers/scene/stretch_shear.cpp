@@ -7,54 +7,36 @@ StretchShear::StretchShear(std::shared_ptr<const TriangleConditions> triangles,
     : triangles_(std::move(triangles)), stiffness_(stiffness), rest_(rest) {}
 
 double StretchShear::energy(const ParticleField& x) const {
-  const Elements<3>& elements = triangles_->elements();
-  CornerVectors<3> at;
-  double density[batch_size];
-  double sum = 0;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& shapes = triangles_->shapes(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  return triangles_->elements().sum(x, [&](int batch) {
+    return [&shapes = triangles_->shapes(batch), k = stiffness_, rest = rest_](const CornerVectors<3>& at,
+                                                                               int i) SPRINGSTAB_LANE {
       const Deformation d = shapes.deformation(at, i);
-      const double c_u = d.l_u - rest_.u, c_v = d.l_v - rest_.v;
-      density[i] = shapes.weight[i] * (stiffness_.stretch_u * c_u * c_u + stiffness_.stretch_v * c_v * c_v +
-                                       stiffness_.shear * d.shear * d.shear);
-    }
-    for (std::size_t i = 0; i < elements.in_batch(b).size(); ++i) sum += density[i];
-  }
-  return sum / 2;
+      const double c_u = d.l_u - rest.u, c_v = d.l_v - rest.v;
+      return shapes.weight[i] *
+             (k.stretch_u * c_u * c_u + k.stretch_v * c_v * c_v + k.shear * d.shear * d.shear);
+    };
+  }) / 2;
 }
 
 void StretchShear::add_force(const ParticleField& x, double* force) const {
-  const Elements<3>& elements = triangles_->elements();
-  const PerTriangleCondition stiffness = stiffness_;
-  const RestStretch rest = rest_;
-  CornerVectors<3> at, out;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& shapes = triangles_->shapes(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  triangles_->elements().add_vectors(x, force, [&](int batch) {
+    return [&shapes = triangles_->shapes(batch), stiffness = stiffness_, rest = rest_](
+               const CornerVectors<3>& at, int i, CornerVectors<3>& out) SPRINGSTAB_LANE {
       const Deformation d = shapes.deformation(at, i);
       const PerTriangleCondition k = stiffness.scaled(-shapes.weight[i]);
       shapes.combine_gradients(
           d, {k.stretch_u * (d.l_u - rest.u), k.stretch_v * (d.l_v - rest.v), k.shear * d.shear}, i, out);
-    }
-    elements.scatter(out, b, force);
-  }
+    };
+  });
 }
 
 // out += scale · K u, and minus the energy's gradient where the force is wanted too.
 template <bool with_force>
 void StretchShear::add_products(const ParticleField& x, const double* u, double scale, double* out) const {
-  const Elements<3>& elements = triangles_->elements();
-  const PerTriangleCondition stiffness = stiffness_;
-  const RestStretch rest = rest_;
-  CornerVectors<3> at, direction, product;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& shapes = triangles_->shapes(b);
-    elements.gather(x, b, at);
-    elements.gather_free(u, b, direction);
-    for (int i = 0; i < batch_size; ++i) {
+  triangles_->elements().add_vectors(x, u, out, [&](int batch) {
+    return [&shapes = triangles_->shapes(batch), stiffness = stiffness_, rest = rest_, scale](
+               const CornerVectors<3>& at, const CornerVectors<3>& direction, int i,
+               CornerVectors<3>& product) SPRINGSTAB_LANE {
       const Deformation d = shapes.deformation(at, i);
       const PerTriangleCondition k = stiffness.scaled(scale * shapes.weight[i]);
       const double t_u = k.stretch_u * (1 - rest.u / d.l_u), t_v = k.stretch_v * (1 - rest.v / d.l_v);
@@ -70,9 +52,8 @@ void StretchShear::add_products(const ParticleField& x, const double* u, double 
       }
       shapes.pull_back(s_u * d.n_u + s_s * d.w_v + t_u * u_u + swap * u_v,
                        s_v * d.n_v + s_s * d.w_u + t_v * u_v + swap * u_u, i, product);
-    }
-    elements.scatter(product, b, out);
-  }
+    };
+  });
 }
 
 void StretchShear::add_stiffness_times(const ParticleField& x, const double* u, double scale,
@@ -89,15 +70,9 @@ Couplings StretchShear::couplings() const { return triangles_->elements().coupli
 
 template <StretchShear::Curvature curvature>
 void StretchShear::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix) const {
-  const Elements<3>& elements = triangles_->elements();
-  const PerTriangleCondition stiffness = stiffness_;
-  const RestStretch rest = rest_;
-  CornerVectors<3> at;
-  CornerBlocks<3> blocks;
-  for (int b = 0; b < elements.batches(); ++b) {
-    const auto& shapes = triangles_->shapes(b);
-    elements.gather(x, b, at);
-    for (int i = 0; i < batch_size; ++i) {
+  triangles_->elements().add_blocks(x, places_, matrix, [&](int batch) {
+    return [&shapes = triangles_->shapes(batch), stiffness = stiffness_, rest = rest_](
+               const CornerVectors<3>& at, int i, CornerBlocks<3>& blocks) SPRINGSTAB_LANE {
       const Deformation d = shapes.deformation(at, i);
       const PerTriangleCondition k = stiffness.scaled(shapes.weight[i]);
       double t_u = k.stretch_u * (1 - rest.u / d.l_u), t_v = k.stretch_v * (1 - rest.v / d.l_v);
@@ -113,9 +88,8 @@ void StretchShear::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix)
           TriangleConditions::gradient_products(d, {k.stretch_u - t_u, k.stretch_v - t_v, k.shear});
       shapes.pull_back({h.uu + isotropic(t_u + lift), h.vv + isotropic(t_v + lift), h.uv + isotropic(swap)},
                        i, blocks);
-    }
-    places_.add(elements, b, blocks, matrix);
-  }
+    };
+  });
 }
 
 void StretchShear::add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const {

@@ -52,25 +52,25 @@ void add_forces(Json& parts, Scene& scene, const State<Vector>& at, double times
 // Assembly, term by term.
 void add_assembly(Json& parts, Scene& scene, const State<Vector>& at, double times) {
   const ParticleField x = scene.position_field(at.x);
-  BlockLinearSystem& linear = scene.linearized(at.x, at.v);
+  const auto linear = scene.linearization(at);
   for (const auto& term : scene.terms().elastic)
     parts.push_back(part(term->name(), term->size(), "Hessian", seconds_each([&] {
                            if (scene.hessian() == Hessian::exact) {
-                             term->add_stiffness(x, linear.stiffness());
+                             term->add_stiffness(x, linear->stiffness());
                            } else {
-                             term->add_projected_stiffness(x, linear.stiffness());
+                             term->add_projected_stiffness(x, linear->stiffness());
                            }
                          }),
                          times));
   for (const auto& term : scene.terms().damping)
     parts.push_back(part(term->name(), term->size(), "damping matrix",
-                         seconds_each([&] { term->add_damping(x, *linear.own_damping()); }), times));
+                         seconds_each([&] { term->add_damping(x, *linear->own_damping()); }), times));
 }
 
 // Products with K and D, and solving: a factorization, or the iterations of conjugate gradients.
 void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, double products, bool solves,
                  double iterations) {
-  BlockLinearSystem& linear = scene.linearized(at.x, at.v);
+  const auto linear = scene.linearization(at);
   Vector out(scene.size());
   const auto stored = [](Json row, const BlockSparseMatrix& matrix) {
     row["bytes"] = matrix.bytes();
@@ -80,11 +80,11 @@ void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, d
     const double seconds = seconds_each([&] { matrix.multiply(at.x.data(), out.data()); });
     parts.push_back(stored(part(name, matrix.blocks(), "product", seconds, products), matrix));
   };
-  add_product("blocks of K", linear.stiffness());
-  if (linear.own_damping()) add_product("blocks of D", *linear.own_damping());
+  add_product("blocks of K", linear->stiffness());
+  if (linear->own_damping()) add_product("blocks of D", *linear->own_damping());
   if (!solves) return;
   SolveReport report;
-  const double seconds = seconds_each([&] { report = linear.solve_shifted({1, h, h * h}, at.x, out); });
+  const double seconds = seconds_each([&] { report = linear->solve_shifted({1, h, h * h}, at.x, out); });
   if (scene.solver().kind == SolverKind::cholesky) {
     parts.push_back(part("Cholesky factorization", scene.size(), "solve", seconds, 1));
   } else {

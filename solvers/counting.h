@@ -16,54 +16,56 @@ struct Counts {
 /// Passes everything on to `system`, which must outlive it, and counts.
 class CountingSystem final : public System {
  public:
-  explicit CountingSystem(System& system, const Counts& so_far = {}) : system_(system), counts_(so_far) {}
-  const Counts& counts() const { return counts_; }
+  explicit CountingSystem(System& system, const Counts& so_far = {})
+      : system_(system), counts_(std::make_shared<Counts>(so_far)) {}
+  const Counts& counts() const { return *counts_; }
 
   Eigen::Index size() const override { return system_.size(); }
   void acceleration(const Vector& x, const Vector& v, Vector& out) override {
-    ++counts_.force_evaluations;
+    ++counts_->force_evaluations;
     system_.acceleration(x, v, out);
   }
-  LinearSystem& linearized(const Vector& x, const Vector& v) override {
-    ++counts_.hessian_assemblies;
-    linear_.target = &system_.linearized(x, v);
-    return linear_;
+  void linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) override {
+    ++counts_->hessian_assemblies;
+    auto mine = std::dynamic_pointer_cast<CountingLinearSystem>(std::move(linear));
+    if (!mine || mine.use_count() > 1) mine = std::make_shared<CountingLinearSystem>();
+    mine->counts = counts_;
+    system_.linearize(x, v, mine->target);
+    linear = std::move(mine);
   }
   double kinetic_energy(const Vector& v) override { return system_.kinetic_energy(v); }
   double potential_energy(const Vector& x) override { return system_.potential_energy(x); }
 
  private:
   struct CountingLinearSystem final : LinearSystem {
-    explicit CountingLinearSystem(Counts& c) : counts(c) {}
     Eigen::Index size() const override { return target->size(); }
     void acceleration(const Vector& x, const Vector& v, Vector& out) override {
-      ++counts.block_products;
+      ++counts->block_products;
       target->acceleration(x, v, out);
     }
     void stiffness_times(const Vector& u, Vector& out) override {
-      ++counts.block_products;
+      ++counts->block_products;
       target->stiffness_times(u, out);
     }
     void damping_times(const Vector& u, Vector& out) override {
-      ++counts.block_products;
+      ++counts->block_products;
       target->damping_times(u, out);
     }
     SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override {
       const SolveReport report = target->solve_shifted(shift, rhs, out);
-      counts.cg_iterations += report.iterations;
-      counts.block_products += report.products;
+      counts->cg_iterations += report.iterations;
+      counts->block_products += report.products;
       return report;
     }
     double kinetic_energy(const Vector& v) override { return target->kinetic_energy(v); }
     double potential_energy(const Vector& x) override { return target->potential_energy(x); }
 
-    Counts& counts;
-    LinearSystem* target = nullptr;
+    std::shared_ptr<Counts> counts;
+    Linearization<Vector> target;
   };
 
   System& system_;
-  Counts counts_;
-  CountingLinearSystem linear_{counts_};
+  std::shared_ptr<Counts> counts_;  // with the linearizations, which may outlive this
 };
 
 }  // namespace springstab

@@ -21,19 +21,7 @@ struct Oscillator {
     out = rhs / (shift.mass + shift.damping * d + shift.stiffness * k);
     return {};
   }
-  const Oscillator& linearized(const V&, const V&) const { return *this; }
+  void linearize(const V&, const V&, Linearization<V>& linear) const { linear = this; }
 };
-
-/// The type that linearizing a system over V gives.
-template <class V>
-struct LinearSystemTrait {
-  using type = const Oscillator<V>;
-};
-template <>
-struct LinearSystemTrait<Vector> {
-  using type = LinearSystem;
-};
-template <class V>
-using LinearSystemOf = typename LinearSystemTrait<V>::type;
 
 }  // namespace springstab

@@ -1,4 +1,9 @@
 // The simulation loop: a method, a system, a given step, and a watch for divergence.
+//
+//     const EnergyWatch watch{.gravity = 9.81, .mass = scene.total_free_mass()};
+//     const auto until = [](const RunSoFar& run, const State<Vector>&) { return run.time < 0.05; };
+//     const SimulationResult end = simulate(scene, *make_stepper(Rk4()), {1e-3, 100}, watch, state, until);
+//     if (end.status == StepStatus::diverged) std::cerr << "diverged at " << end.failed_at << " s\n";
 #pragma once
 
 #include <functional>

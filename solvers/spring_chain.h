@@ -1,5 +1,10 @@
 // A chain of masses on a line between two walls: mass i between springs i and i + 1, displaced by x_i [m]
 // from rest. Tridiagonal, so that everything about it is solved directly.
+//
+//     SpringChain chain({1, 2, 1}, {300, 200, 200, 300}, RayleighDamping{.d0 = 0.5});
+//     State<Vector> state{Vector::Constant(3, 0.1), Vector::Zero(3)};
+//     const auto euler = make_stepper(SymplecticEuler());
+//     while (euler->step(chain, 0.01, state) == StepStatus::done && state.x[1] > 0) continue;
 #pragma once
 
 #include <optional>

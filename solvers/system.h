@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <concepts>
+#include <memory>
 
 #include "solvers/state.h"
 
@@ -45,14 +46,30 @@ concept Linear = Accelerating<S, V> && requires(S& system, const Shift& shift, c
   { system.solve_shifted(shift, u, out) } -> std::same_as<SolveReport>;
 };
 
-/// A system that can be linearized at (x, v); a linear one returns itself.
-template <class S, class V>
-concept Linearizable = Accelerating<S, V> && requires(S& system, const V& x, const V& v) {
-  { system.linearized(x, v) } -> Linear<V>;
-};
-
 using Vector = Eigen::VectorXd;
 class LinearSystem;
+template <class V>
+struct Oscillator;
+
+/// A pointer to what linearizing a system over V gives. Who asks keeps it, and hands it in again to have its
+/// memory used again.
+template <class V>
+struct LinearizationTrait {
+  using type = const Oscillator<V>*;
+};
+template <>
+struct LinearizationTrait<Vector> {
+  using type = std::shared_ptr<LinearSystem>;
+};
+template <class V>
+using Linearization = typename LinearizationTrait<V>::type;
+
+/// A system that can be linearized at (x, v); a linear one gives itself.
+template <class S, class V>
+concept Linearizable = Accelerating<S, V> &&
+    requires(S& system, const V& x, const V& v, Linearization<V>& linear) {
+  system.linearize(x, v, linear);
+};
 
 /// A mechanical system with `size()` unknowns, chosen at run time. Not const: systems own workspace.
 class System {
@@ -61,8 +78,9 @@ class System {
   virtual Eigen::Index size() const = 0;
   /// out = M⁻¹ f(x, v); resizes `out`. Overflow shows as non-finite entries, it is not an error.
   virtual void acceleration(const Vector& x, const Vector& v, Vector& out) = 0;
-  /// The linear system with K and D of the state (x, v). Valid until the next call.
-  virtual LinearSystem& linearized(const Vector& x, const Vector& v) = 0;
+  /// Makes `linear` the linear system with K and D of the state (x, v). One from an earlier call, which
+  /// nobody else shares, is filled anew without allocation.
+  virtual void linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) = 0;
   /// ½ vᵀMv [J].
   virtual double kinetic_energy(const Vector& v) = 0;
   /// Elastic energy plus the potential of the constant forces [J].
@@ -76,7 +94,10 @@ class LinearSystem : public System {
   virtual void damping_times(const Vector& u, Vector& out) = 0;    // out = D'u
   /// Solves (m + dD' + kK') out = rhs, starting from zero where it iterates.
   virtual SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) = 0;
-  LinearSystem& linearized(const Vector&, const Vector&) override { return *this; }
+  /// Itself, not a copy: it has to outlive its linearization.
+  void linearize(const Vector&, const Vector&, Linearization<Vector>& linear) override {
+    linear = Linearization<Vector>(Linearization<Vector>(), this);
+  }
 };
 
 }  // namespace springstab

@@ -57,10 +57,11 @@ class Pendulum final : public System {
   void acceleration(const Vector& x, const Vector& v, Vector& out) override {
     out.setConstant(1, slope(x[0], v[0]));
   }
-  LinearSystem& linearized(const Vector& x, const Vector& v) override {
-    tangent_.k = std::cos(x[0]);
-    tangent_.d = 0.3 + 0.3 * v[0] * v[0];
-    return tangent_;
+  void linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) override {
+    auto tangent = std::make_shared<Tangent>();
+    tangent->k = std::cos(x[0]);
+    tangent->d = 0.3 + 0.3 * v[0] * v[0];
+    linear = std::move(tangent);
   }
   double kinetic_energy(const Vector& v) override { return v[0] * v[0] / 2; }
   double potential_energy(const Vector& x) override { return 1 - std::cos(x[0]); }
@@ -79,7 +80,6 @@ class Pendulum final : public System {
     double kinetic_energy(const Vector& v) override { return v[0] * v[0] / 2; }
     double potential_energy(const Vector& x) override { return k * x[0] * x[0] / 2; }
   };
-  Tangent tangent_;
 };
 
 /// (x, v) of the pendulum at time t by Dormand and Prince's method of order 8, to `tolerance`.

@@ -39,10 +39,10 @@ struct Theta {
     StepStatus step(System& system, double h, State<V>& state) {
       const double part = theta_ * h;
       system.acceleration(state.x, state.v, a_);
-      auto& linear = system.linearized(state.x, state.v);
-      linear.stiffness_times(state.v, v_);
+      system.linearize(state.x, state.v, linear_);
+      linear_->stiffness_times(state.v, v_);
       a_ = h * (a_ - part * v_);
-      const SolveReport solved = linear.solve_shifted({1, part, part * part}, a_, v_);
+      const SolveReport solved = linear_->solve_shifted({1, part, part * part}, a_, v_);
       if (solved.status != StepStatus::done) return solved.status;
       x_ = state.x + h * (state.v + theta_ * v_);
       v_ = state.v + v_;
@@ -51,6 +51,7 @@ struct Theta {
 
    private:
     double theta_;
+    Linearization<V> linear_ = {};
     V x_, v_, a_;
   };
 };
@@ -265,7 +266,9 @@ class FailingChain final : public System {
     chain_.acceleration(x, v, out);
     if (++calls_ == failing_call_) out[2] = std::numeric_limits<double>::quiet_NaN();
   }
-  LinearSystem& linearized(const Vector&, const Vector&) override { return chain_; }
+  void linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) override {
+    chain_.linearize(x, v, linear);
+  }
   double kinetic_energy(const Vector& v) override { return chain_.kinetic_energy(v); }
   double potential_energy(const Vector& x) override { return chain_.potential_energy(x); }
 

@@ -125,11 +125,11 @@ Vector mass_vector(const BlockLinearSystem& linear) {
 Vector force(Scene& scene, const Vector& x, const Vector& v) {
   Vector a;
   scene.acceleration(x, v, a);
-  return mass_vector(scene.linearized(x, v)).cwiseProduct(a);
+  return mass_vector(*scene.linearization({x, v})).cwiseProduct(a);
 }
 
 Dense stiffness(Scene& scene, const Vector& x) {
-  return Dense(scene.linearized(x, Vector::Zero(x.size())).stiffness().to_sparse());
+  return Dense(scene.linearization({x, Vector::Zero(x.size())})->stiffness().to_sparse());
 }
 
 /// The Jacobian of f at x by central differences.
@@ -249,7 +249,7 @@ BOOST_AUTO_TEST_CASE(the_damping_matrix_is_the_differenced_force) {
     Scene scene(net, some_pins, {0, 0, 0}, {});
     const Vector x = take(scene, pose, some_pins), v = random.vector(x.size());
     BOOST_TEST(scene.has_own_damping());
-    const Dense c(scene.linearized(x, v).own_damping()->to_sparse());
+    const Dense c(scene.linearization({x, v})->own_damping()->to_sparse());
     // Without springs' stiffness, lest its rounding covers the damping's.
     std::vector<Spring> dampers = net.springs;
     for (Spring& s : dampers) s.stiffness = 0;
@@ -334,7 +334,7 @@ BOOST_AUTO_TEST_CASE(a_pinned_scene_is_a_part_of_the_free_one) {
     };
     check_blocks(stiffness(pinned, x), stiffness(free, all)(kept, kept));
     const auto damping = [](Scene& scene, const Vector& at) {
-      return Dense(scene.linearized(at, at).own_damping()->to_sparse());
+      return Dense(scene.linearization({at, at})->own_damping()->to_sparse());
     };
     check_blocks(damping(pinned, x), damping(free, all)(kept, kept));
     const Vector v = random.vector(15);
@@ -372,7 +372,7 @@ BOOST_AUTO_TEST_CASE(rayleigh_damping_acts_through_the_stiffness_of_the_moment) 
     const Vector x = take(scene, pose, some_pins), v = random.vector(x.size()),
                  still = Vector::Zero(x.size());
     take(plain, pose, some_pins);
-    BlockLinearSystem& linear = plain.linearized(x, still);
+    BlockLinearSystem linear = *plain.linearization({x, still});
     const Vector m = mass_vector(linear);
     const Dense k(linear.stiffness().to_sparse()), c(linear.own_damping()->to_sparse());
     const Vector damped = -damping.d0 * m.cwiseProduct(v) - damping.alpha * (k * v) - c * v;
@@ -381,7 +381,7 @@ BOOST_AUTO_TEST_CASE(rayleigh_damping_acts_through_the_stiffness_of_the_moment) 
     BOOST_TEST(damped.norm() > 1e-3 * expected.norm());
 
     // The frozen system: -K'u - D'v, without gravity and without what the springs pull already.
-    BlockLinearSystem& frozen = scene.linearized(x, v);
+    BlockLinearSystem frozen = *scene.linearization({x, v});
     const Vector u = random.vector(x.size());
     Vector a;
     frozen.acceleration(u, v, a);
@@ -389,7 +389,7 @@ BOOST_AUTO_TEST_CASE(rayleigh_damping_acts_through_the_stiffness_of_the_moment) 
 
     plain.set_damping(damping);
     BOOST_TEST((force(plain, x, v) == force(scene, x, v)));
-    plain.linearized(x, v).acceleration(u, v, a);
+    plain.linearization({x, v})->acceleration(u, v, a);
     check_equal(m.cwiseProduct(a), -k * u + damped, 1e-12);
   });
 }
@@ -431,10 +431,52 @@ BOOST_AUTO_TEST_CASE(a_scene_without_linearizations_has_no_matrix) {
   scene.set_damping({0.2, 2e-3});
   BOOST_TEST(scene.kinetic_energy(state.v) > 0);
   BOOST_TEST(!scene.has_matrices());
-  const RayleighDamping& damping = scene.linearized(state.x, state.v).damping();
+  const RayleighDamping damping = scene.linearization(state)->damping();
   BOOST_TEST(scene.has_matrices());
   BOOST_TEST(damping.d0 == 0.2);
   BOOST_TEST(damping.alpha == 2e-3);
+}
+
+// Each who asks has a linearization of its own, and what one does with it the others do not see.
+BOOST_AUTO_TEST_CASE(a_linearization_is_owned_by_who_asked) {
+  Random random(8);
+  const SpringNet net = random_net(random);
+  const auto scene =
+      std::make_unique<Scene>(net, some_pins, Eigen::Vector3d(0, -9.81, 0), RayleighDamping{0.1, 1e-3});
+  State<Vector> state = scene->rest_state(), moved = state;
+  for (double& x : moved.x) x += 0.01 * random(-1, 1);
+  Linearization<Vector> mine, shared;
+  scene->linearize(state.x, state.v, mine);
+  const LinearSystem* const first = mine.get();
+  Vector before, after;
+  mine->stiffness_times(moved.x, before);
+
+  const auto other = scene->linearization(moved);
+  scene->set_damping({5, 5});
+  mine->stiffness_times(moved.x, after);
+  BOOST_TEST((before == after));
+  BOOST_TEST(other->damping().alpha == 1e-3);
+  BOOST_TEST((other->stiffness().pattern() == scene->linearization(state)->stiffness().pattern()));
+
+  shared = mine;  // the next one does not take from under the second holder
+  scene->linearize(moved.x, moved.v, mine);
+  BOOST_TEST(mine.get() != first);
+  shared->stiffness_times(moved.x, after);
+  BOOST_TEST((before == after));
+  shared.reset();
+  const LinearSystem* const second = mine.get();
+  scene->linearize(state.x, state.v, mine);
+  BOOST_TEST(mine.get() == second);  // its own memory again
+  mine->stiffness_times(moved.x, after);
+  BOOST_TEST((before == after));
+
+  // One that another scene made is not written over.
+  const auto twin = std::make_unique<Scene>(net, some_pins, Eigen::Vector3d(0, -9.81, 0), RayleighDamping{});
+  auto theirs = twin->linearization(moved);
+  const BlockLinearSystem* const of_twin = theirs.get();
+  const auto kept = theirs;
+  scene->linearize(state.x, state.v, theirs);
+  BOOST_TEST(theirs.get() != of_twin);
 }
 
 BOOST_AUTO_TEST_CASE(what_a_scene_lacks_is_not_stored) {
@@ -442,7 +484,7 @@ BOOST_AUTO_TEST_CASE(what_a_scene_lacks_is_not_stored) {
   SpringNet net = random_net(random);
   const auto blocks = [](Scene& scene) {
     const State<Vector> start = scene.rest_state();
-    return scene.linearized(start.x, start.v).stiffness().blocks();
+    return scene.linearization(start)->stiffness().blocks();
   };
   long between_free = 0;
   for (const Spring& s : net.springs) between_free += s.i != 1 && s.j != 1 && s.i != 4 && s.j != 4;
@@ -452,12 +494,12 @@ BOOST_AUTO_TEST_CASE(what_a_scene_lacks_is_not_stored) {
   for (std::size_t i = 1; i < net.springs.size(); ++i) net.springs[i].damping = 0;
   Scene one_damper(net, {}, {0, 0, 0}, {});
   const State<Vector> start = one_damper.rest_state();
-  BOOST_TEST(one_damper.linearized(start.x, start.v).own_damping()->blocks() == 7 + 1);
+  BOOST_TEST(one_damper.linearization(start)->own_damping()->blocks() == 7 + 1);
 
   net.springs[0].damping = 0;
   Scene undamped(net, {}, {0, 0, 0}, {0.1, 0.1});
   BOOST_TEST(!undamped.has_own_damping());
-  BOOST_TEST(undamped.linearized(start.x, start.v).own_damping() == nullptr);
+  BOOST_TEST(undamped.linearization(start)->own_damping() == nullptr);
 
   net.springs.clear();
   Scene dust(net, some_pins, {0, -9.81, 0}, {0.1, 0.1});

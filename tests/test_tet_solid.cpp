@@ -468,7 +468,7 @@ BOOST_AUTO_TEST_CASE(k0_is_that_of_a_dense_eigen_solver) {
       const TetSolid solid = make_solid(repaired(mesh).mesh, {});
       Scene scene(solid, {}, {0, 0, 0}, {});
       const State<Vector> rest = scene.rest_state();
-      BlockLinearSystem& linear = scene.linearized(rest.x, rest.v);
+      BlockLinearSystem linear = *scene.linearization(rest);
       StructuralMatrices s;
       s.stiffness = linear.stiffness().to_sparse();
       s.mass = springstab::lumped_mass(linear.mass());

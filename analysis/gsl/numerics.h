@@ -1,6 +1,8 @@
 // What the analysis takes from the GNU Scientific Library: functions of functions, without the library's
 // types.
-//     root_between([](double t) { return std::cos(t); }, 1, 2);  // π/2
+//
+//     const double half_pi = root_between([](double t) { return std::cos(t); }, 1, 2);
+//
 // GSL is under the GNU General Public License, version 3; README says what that means for a binary.
 #pragma once
 

@@ -82,13 +82,13 @@ Structure structure_of(StructuralMatrices matrices) {
 }
 
 Structure structure_of(Scene& scene, const State<Vector>& state) {
-  BlockLinearSystem& linear = scene.linearized(state.x, state.v);
+  const auto linear = scene.linearization(state);
   Structure structure{{}, damping_of(scene)};
   StructuralMatrices& s = structure.matrices;
-  s.stiffness = linear.stiffness().to_sparse();
-  s.mass = lumped_mass(linear.mass());
-  if (const BlockSparseMatrix* own = linear.own_damping())
-    s.damping = linear.damping().d0 * s.mass + linear.damping().alpha * s.stiffness + own->to_sparse();
+  s.stiffness = linear->stiffness().to_sparse();
+  s.mass = lumped_mass(linear->mass());
+  if (const BlockSparseMatrix* own = linear->own_damping())
+    s.damping = linear->damping().d0 * s.mass + linear->damping().alpha * s.stiffness + own->to_sparse();
   return structure;
 }
 

@@ -1,5 +1,9 @@
 // What limits are asked of: the matrices of a structure at one state, and what its damping is.
 //     M x'' = -K x - D v,   D = d0 M + alpha K where the damping is Rayleigh's (paper Eq. 28)
+//
+//     const Structure hanging = structure_of(scene, scene.rest_state());
+//     const Structure from_files = structure_of(prepare(stiffness, mass, damping));
+//     const Structure designed{prepare(stiffness), {.kind = DampingModel::Kind::designed, .d0 = 1}};
 #pragma once
 
 #include <optional>

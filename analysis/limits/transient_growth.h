@@ -1,5 +1,8 @@
 // What a stable method lets happen before it decays: A is not normal, and its powers may grow first, without
 // bound towards double eigenvalues of modulus 1.
+//
+//     const double growth = transient_growth("explicit-euler", 3.9, 3.9);
+//     std::cout << "a stable run may grow " << growth << "-fold before it decays\n";
 #pragma once
 
 #include "analysis/limits/step_limits.h"

@@ -8,6 +8,11 @@
 // T and Δ are the rational functions that the method's own step gives. Along any polynomial curve
 // (X(t), Y(t)) the three are rational in t, so where they change sign is a polynomial root problem:
 // columns, damping lines and the path of one mode as h grows are all such curves. No raster is involved.
+//
+//     const StabilityRegion& region = stability_region("rk4");
+//     const double reach = region.constants().imaginary_interval;  // 2 √2: undamped modes up to ωh
+//     const double h = region.critical_step(1e4, 2);               // of k = 1e4 1/s², d = 2 1/s [s]
+//     const auto arcs = region.boundary(region.natural_window(0.1));
 #pragma once
 
 #include <array>

@@ -4,15 +4,11 @@
 
 namespace springstab {
 
-BlockLinearSystem::BlockLinearSystem(
-    std::vector<double> mass, RayleighDamping damping,
-    std::span<const std::pair<int, int>> stiffness_couplings,
-    std::optional<std::span<const std::pair<int, int>>> own_damping_couplings)
-    : mass_(std::move(mass)),
-      damping_(damping),
-      stiffness_(static_cast<int>(mass_.size()), stiffness_couplings) {
+BlockLinearSystem::BlockLinearSystem(std::vector<double> mass, RayleighDamping damping,
+                                     SharedPattern stiffness, SharedPattern own_damping)
+    : mass_(std::move(mass)), damping_(damping), stiffness_(std::move(stiffness)) {
   for (const double m : mass_) inverse_mass_.push_back(1 / m);
-  if (own_damping_couplings) own_damping_.emplace(static_cast<int>(mass_.size()), *own_damping_couplings);
+  if (own_damping) own_damping_.emplace(std::move(own_damping));
 }
 
 void BlockLinearSystem::acceleration(const Vector& x, const Vector& v, Vector& out) {

@@ -20,10 +20,9 @@ namespace springstab {
 class BlockLinearSystem final : public LinearSystem {
  public:
   /// mass: one per particle [kg]. K and C [N/m, N·s/m] start at zero and are filled through stiffness() and
-  /// own_damping(); pass no couplings for C when there is none.
-  BlockLinearSystem(std::vector<double> mass, RayleighDamping damping,
-                    std::span<const std::pair<int, int>> stiffness_couplings,
-                    std::optional<std::span<const std::pair<int, int>>> own_damping_couplings = std::nullopt);
+  /// own_damping(); pass no pattern for C when there is none.
+  BlockLinearSystem(std::vector<double> mass, RayleighDamping damping, SharedPattern stiffness,
+                    SharedPattern own_damping = nullptr);
 
   BlockSparseMatrix& stiffness() { return stiffness_; }
   const BlockSparseMatrix& stiffness() const { return stiffness_; }

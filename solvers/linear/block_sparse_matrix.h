@@ -1,16 +1,14 @@
 // A symmetric sparse matrix of 3x3 blocks, for the stiffness and damping of particle systems. Only the lower
 // triangle is stored: half the memory, and half of what a product reads.
 //
-// Invariants: block rows are stored one after another (compressed rows); within a row the columns ascend and
-// do not repeat; the last one is the diagonal block, which is stored in every row and is symmetric. A block
+// Blocks are stored one after another in the order of the pattern, those on the diagonal symmetric. A block
 // is 9 doubles, row by row. The pattern is fixed at construction, values change.
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <span>
-#include <utility>
 #include <vector>
 
+#include "solvers/linear/block_pattern.h"
 #include "solvers/linear/four.h"
 
 namespace springstab {
@@ -20,27 +18,28 @@ using Block3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 class BlockSparseMatrix {
  public:
-  /// `rows` block rows, with the diagonal and what each coupling (i, j) has below it.
-  /// Throws std::invalid_argument for an index out of range.
-  BlockSparseMatrix(int rows, std::span<const std::pair<int, int>> couplings);
+  /// Zero, with a block at each place of the pattern.
+  explicit BlockSparseMatrix(SharedPattern pattern);
+  /// With a pattern of its own.
+  BlockSparseMatrix(int rows, std::span<const std::pair<int, int>> couplings)
+      : BlockSparseMatrix(std::make_shared<BlockPattern>(rows, couplings)) {}
 
-  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
+  const SharedPattern& pattern() const { return pattern_; }
+  int rows() const { return pattern_->rows(); }
   /// Those stored.
-  long blocks() const { return static_cast<long>(column_.size()); }
+  long blocks() const { return pattern_->blocks(); }
 
-  /// Where block (i, j), i >= j, is stored; throws std::out_of_range if it is not in the pattern.
-  long find(int i, int j) const;
-  double* block(long where) { return &value_[9 * where]; }
-  const double* block(long where) const { return &value_[9 * where]; }
-  long diagonal(int i) const { return row_start_[i + 1] - 1; }
-  /// The blocks of row i are those from row_begin(i) to diagonal(i).
-  long row_begin(int i) const { return row_start_[i]; }
-  int column(long where) const { return column_[where]; }
+  double* block(long place) { return &value_[9 * place]; }
+  const double* block(long place) const { return &value_[9 * place]; }
+  /// See BlockPattern.
+  long find(int i, int j) const { return pattern_->find(i, j); }
+  long diagonal(int i) const { return pattern_->diagonal(i); }
+  long row_begin(int i) const { return pattern_->row_begin(i); }
+  int column(long place) const { return pattern_->column(place); }
 
-  /// What the matrix takes in memory.
+  /// What the matrix takes in memory, with its pattern.
   std::size_t bytes() const {
-    return sizeof(double) * (value_.size() + static_cast<std::size_t>(sum_.size())) +
-           sizeof(int) * column_.size() + sizeof(long) * row_start_.size();
+    return sizeof(double) * (value_.size() + static_cast<std::size_t>(sum_.size())) + pattern_->bytes();
   }
 
   void set_zero();
@@ -58,8 +57,7 @@ class BlockSparseMatrix {
   Eigen::SparseMatrix<double> to_sparse() const;
 
  private:
-  std::vector<long> row_start_;
-  std::vector<int> column_;
+  SharedPattern pattern_;
   std::vector<double> value_;    // 9 per block, and one to read beyond the last
   mutable Eigen::VectorXd sum_;  // of a product, what the rows below have added: 4 per row, zeros in between
 };
@@ -75,8 +73,8 @@ void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const 
   const int last = rows() - 1;
   const double* const in_last = in + 3 * static_cast<long>(last);
   const double copy[4] = {in_last[0], in_last[1], in_last[2], 0};
-  const long* const row_start = row_start_.data();
-  const int* const column = column_.data();
+  const long* const row_start = pattern_->row_start_.data();
+  const int* const column = pattern_->column_.data();
   const double* b = value_.data() + 9 * blocks();
   double* const sum = sum_.data();
   for (int i = last; i >= 0; --i) {

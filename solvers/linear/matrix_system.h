@@ -1,4 +1,8 @@
 // A linear system given by its matrices: M x'' = -K x - D v, for structures read from files.
+//
+//     MatrixSystem system(prepare(stiffness, mass));
+//     State<Vector> state{Vector::Ones(system.size()), Vector::Zero(system.size())};
+//     make_stepper(ImplicitEuler())->step(system, 0.01, state);
 #pragma once
 
 #include <memory>

@@ -1,4 +1,8 @@
 // K, M and D of a structure as matrices, checked and made ready: finite, of one size, no unknown massless.
+//
+//     const SparseMatrix stiffness = read_matrix("K.mtx"), mass = read_matrix("M.mtx");
+//     const StructuralMatrices s = prepare(stiffness, mass);
+//     std::cout << s.size() << " unknowns, " << s.condensed << " without mass were condensed\n";
 #pragma once
 
 #include <Eigen/SparseCore>

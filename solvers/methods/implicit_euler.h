@@ -21,10 +21,10 @@ class ImplicitEuler::Steps {
   template <Linearizable<V> System>
   StepStatus step(System& system, double h, State<V>& state) {
     system.acceleration(state.x, state.v, a_);
-    auto& linear = system.linearized(state.x, state.v);
-    linear.stiffness_times(state.v, v_);
+    system.linearize(state.x, state.v, linear_);
+    linear_->stiffness_times(state.v, v_);
     a_ = h * (a_ - h * v_);
-    const SolveReport solved = linear.solve_shifted({1, h, h * h}, a_, v_);
+    const SolveReport solved = linear_->solve_shifted({1, h, h * h}, a_, v_);
     if (solved.status != StepStatus::done) return solved.status;
     v_ = state.v + v_;
     x_ = state.x + h * v_;
@@ -32,6 +32,7 @@ class ImplicitEuler::Steps {
   }
 
  private:
+  Linearization<V> linear_ = {};
   V x_, v_, a_;
 };
 

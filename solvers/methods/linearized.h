@@ -9,7 +9,7 @@
 
 #include "solvers/methods/explicit_euler.h"
 #include "solvers/methods/rk4.h"
-#include "solvers/oscillator.h"
+#include "solvers/system.h"
 
 namespace springstab {
 
@@ -36,7 +36,7 @@ class Linearized {
  private:
   // The linear system plus what the forces have beyond it at the point of linearization.
   struct Frozen {
-    LinearSystemOf<V>* linear = nullptr;
+    Linearization<V> linear = {};
     V constant;
 
     void acceleration(const V& x, const V& v, V& a) {
@@ -48,7 +48,7 @@ class Linearized {
   template <class System>
   void freeze(System& system, const State<V>& state) {
     system.acceleration(state.x, state.v, frozen_.constant);
-    frozen_.linear = &system.linearized(state.x, state.v);
+    system.linearize(state.x, state.v, frozen_.linear);
     frozen_.linear->acceleration(state.x, state.v, work_);
     frozen_.constant = frozen_.constant - work_;
   }

@@ -79,7 +79,7 @@ class AltitudeSprings final : public ElasticTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& stiffness) override { places_.bind(altitudes_->elements(), stiffness); }
+  void bind(const SharedPattern& pattern) override { places_.bind(altitudes_->elements(), pattern); }
 
  private:
   std::shared_ptr<const Altitudes> altitudes_;
@@ -97,7 +97,7 @@ class AltitudeDamping final : public DampingTerm {
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
   Couplings couplings() const override { return altitudes_->elements().couplings(); }
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;
-  void bind(const BlockSparseMatrix& damping) override { places_.bind(altitudes_->elements(), damping); }
+  void bind(const SharedPattern& pattern) override { places_.bind(altitudes_->elements(), pattern); }
 
  private:
   std::shared_ptr<const Altitudes> altitudes_;

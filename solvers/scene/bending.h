@@ -32,7 +32,7 @@ class Bending final : public ElasticTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& stiffness) override { places_.bind(hinges_->elements(), stiffness); }
+  void bind(const SharedPattern& pattern) override { places_.bind(hinges_->elements(), pattern); }
 
  private:
   template <bool with_force>

@@ -25,7 +25,7 @@ class StretchShearDamping final : public DampingTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& damping) override { places_.bind(triangles_->elements(), damping); }
+  void bind(const SharedPattern& pattern) override { places_.bind(triangles_->elements(), pattern); }
 
  private:
   std::shared_ptr<const TriangleConditions> triangles_;
@@ -47,7 +47,7 @@ class BendingDamping final : public DampingTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& damping) override { places_.bind(hinges_->elements(), damping); }
+  void bind(const SharedPattern& pattern) override { places_.bind(hinges_->elements(), pattern); }
 
  private:
   std::shared_ptr<const HingeAngles> hinges_;

@@ -224,31 +224,31 @@ class Elements {
 };
 
 /// Where the blocks of elements are in a matrix. Looking a block up costs more than filling it, so `bind`
-/// does it once and for all for one matrix; other matrices are served all the same, slowly.
+/// does it once and for all for the matrices of one pattern; others are served all the same, slowly.
 template <int corners>
 class BlockPlaces {
  public:
-  /// The matrix must outlive the binding or be replaced by another call.
-  void bind(const Elements<corners>& elements, const BlockSparseMatrix& matrix) {
-    if (matrix.blocks() > std::numeric_limits<int>::max())
-      throw std::invalid_argument("a matrix of " + std::to_string(matrix.blocks()) +
+  void bind(const Elements<corners>& elements, const SharedPattern& pattern) {
+    if (pattern->blocks() > std::numeric_limits<int>::max())
+      throw std::invalid_argument("a matrix of " + std::to_string(pattern->blocks()) +
                                   " blocks, expected at most 2^31 - 1");
     places_.clear();
     places_.reserve(static_cast<std::size_t>(elements.size()));
     for (int b = 0; b < elements.batches(); ++b)
       for (const auto& particles : elements.in_batch(b))
-        places_.push_back(look_up(elements, particles, matrix));
-    matrix_ = &matrix;
+        places_.push_back(look_up(elements, particles, *pattern));
+    pattern_ = pattern;
   }
 
   /// matrix += the blocks of a batch of elements, between free particles.
   void add(const Elements<corners>& elements, int batch, const CornerBlocks<corners>& blocks,
            BlockSparseMatrix& matrix) const {
     const auto in_batch = elements.in_batch(batch);
-    const bool bound = matrix_ == &matrix;
+    const bool bound = pattern_ == matrix.pattern();
     for (int lane = 0; lane < static_cast<int>(in_batch.size()); ++lane) {
       const auto& particles = in_batch[lane];
-      const Place place = bound ? places_[batch * batch_size + lane] : look_up(elements, particles, matrix);
+      const Place place =
+          bound ? places_[batch * batch_size + lane] : look_up(elements, particles, *matrix.pattern());
       for (int c = 0, pair = 0; c < corners; ++c) {
         if (elements.is_free(particles[c]))
           add_on_diagonal(blocks.entry + 9 * upper<corners>(c, c), lane,
@@ -271,12 +271,12 @@ class BlockPlaces {
   using Place = std::array<int, corners*(corners - 1) / 2>;
 
   static Place look_up(const Elements<corners>& elements, const std::array<int, corners>& particles,
-                       const BlockSparseMatrix& matrix) {
+                       const BlockPattern& pattern) {
     Place place;
     for (int c = 0, pair = 0; c < corners; ++c)
       for (int d = c + 1; d < corners; ++d, ++pair) {
         const auto [low, high] = std::minmax(particles[c], particles[d]);
-        place[pair] = elements.is_free(high) ? static_cast<int>(matrix.find(high, low)) : -1;
+        place[pair] = elements.is_free(high) ? static_cast<int>(pattern.find(high, low)) : -1;
       }
     return place;
   }
@@ -301,7 +301,7 @@ class BlockPlaces {
       for (int c = 0; c < 3; ++c) to[3 * c + r] += entry[3 * r + c][lane];
   }
 
-  const BlockSparseMatrix* matrix_ = nullptr;
+  SharedPattern pattern_;
   std::vector<Place> places_;
 };
 

@@ -92,22 +92,13 @@ void Scene::number_particles(const std::vector<Eigen::Vector3d>& rest, const std
   pinned_velocity_.assign(pinned_.size(), 0.0);
 }
 
-BlockLinearSystem& Scene::linear() {
-  if (linear_) return *linear_;
-  const Couplings stiffness = all_couplings(terms_.elastic);
-  if (terms_.damping.empty()) {
-    linear_ = std::make_unique<BlockLinearSystem>(mass_, damping_, stiffness);
-  } else {
-    linear_ = std::make_unique<BlockLinearSystem>(mass_, damping_, stiffness, all_couplings(terms_.damping));
-    for (const auto& term : terms_.damping) term->bind(*linear_->own_damping());
-  }
-  for (const auto& term : terms_.elastic) term->bind(linear_->stiffness());
-  return *linear_;
-}
-
-void Scene::set_damping(const RayleighDamping& damping) {
-  damping_ = damping;
-  if (linear_) linear_->set_damping(damping);
+void Scene::make_patterns() {
+  if (has_matrices()) return;
+  stiffness_pattern_ = std::make_shared<BlockPattern>(free_count_, all_couplings(terms_.elastic));
+  for (const auto& term : terms_.elastic) term->bind(stiffness_pattern_);
+  if (terms_.damping.empty()) return;
+  damping_pattern_ = std::make_shared<BlockPattern>(free_count_, all_couplings(terms_.damping));
+  for (const auto& term : terms_.damping) term->bind(damping_pattern_);
 }
 
 double Scene::total_free_mass() const {
@@ -156,23 +147,38 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
     for (int r = 0; r < 3; ++r) a[3 * i + r] = inverse_mass_[i] * a[3 * i + r] + g[r] - d0 * w[3 * i + r];
 }
 
-BlockLinearSystem& Scene::linearized(const Vector& x, const Vector&) {
+void Scene::linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) {
+  auto mine = std::dynamic_pointer_cast<BlockLinearSystem>(std::move(linear));
+  linearize(x, v, mine);
+  linear = std::move(mine);
+}
+
+void Scene::linearize(const Vector& x, const Vector&, std::shared_ptr<BlockLinearSystem>& linear) {
+  make_patterns();
+  if (!linear || linear.use_count() > 1 || linear->stiffness().pattern() != stiffness_pattern_)
+    linear = std::make_shared<BlockLinearSystem>(mass_, damping_, stiffness_pattern_, damping_pattern_);
+  linear->set_damping(damping_);
+  linear->solver = solver_;
   const ParticleField positions = position_field(x);
-  BlockLinearSystem& system = linear();
-  system.solver = solver_;
-  system.stiffness().set_zero();
+  BlockSparseMatrix& stiffness = linear->stiffness();
+  stiffness.set_zero();
   for (const auto& term : terms_.elastic) {
     if (hessian_ == Hessian::projected) {
-      term->add_projected_stiffness(positions, system.stiffness());
+      term->add_projected_stiffness(positions, stiffness);
     } else {
-      term->add_stiffness(positions, system.stiffness());
+      term->add_stiffness(positions, stiffness);
     }
   }
-  if (BlockSparseMatrix* damping = system.own_damping()) {
+  if (BlockSparseMatrix* damping = linear->own_damping()) {
     damping->set_zero();
     for (const auto& term : terms_.damping) term->add_damping(positions, *damping);
   }
-  return system;
+}
+
+std::shared_ptr<BlockLinearSystem> Scene::linearization(const State<Vector>& state) {
+  std::shared_ptr<BlockLinearSystem> linear;
+  linearize(state.x, state.v, linear);
+  return linear;
 }
 
 double Scene::kinetic_energy(const Vector& v) {

@@ -1,5 +1,11 @@
 // A scene: particles, some of them pinned, and the sum of what acts on them. The unknowns are the free
 // particles' coordinates, three per particle in the order of their numbers; pinned ones do not appear.
+//
+//     const SpringNet net = make_net(Grid{.rows = 8, .columns = 8}, SpringMaterial{});
+//     Scene scene(net, {0, 7}, {0, -9.81, 0}, RayleighDamping{.d0 = 1});  // two corners pinned
+//     State<Vector> state = scene.rest_state();
+//     const auto rk4 = make_stepper(Rk4());
+//     for (int i = 0; i < 100; ++i) rk4->step(scene, 1e-3, state);
 #pragma once
 
 #include <Eigen/Core>
@@ -53,14 +59,15 @@ class Scene final : public System {
   double total_free_mass() const;
   const Eigen::Vector3d& gravity() const { return gravity_; }
 
-  void set_damping(const RayleighDamping& damping);
-  /// Which K linearized() gives, also for Rayleigh damping in the linear system; forces always have the exact
-  /// one. Exact unless set.
+  /// From the next force and the next linearization on.
+  void set_damping(const RayleighDamping& damping) { damping_ = damping; }
+  /// Which K a linearization gets, also for Rayleigh damping in the linear system; forces always have the
+  /// exact one. Exact unless set.
   void set_hessian(Hessian hessian) { hessian_ = hessian; }
   Hessian hessian() const { return hessian_; }
 
   /// Whether a linearization was asked for: until then there is no matrix.
-  bool has_matrices() const { return linear_ != nullptr; }
+  bool has_matrices() const { return stiffness_pattern_ != nullptr; }
 
   /// The free particles at rest, not moving.
   State<Vector> rest_state() const;
@@ -77,7 +84,10 @@ class Scene final : public System {
 
   Eigen::Index size() const override { return 3 * static_cast<Eigen::Index>(free_count_); }
   void acceleration(const Vector& x, const Vector& v, Vector& out) override;
-  BlockLinearSystem& linearized(const Vector& x, const Vector& v) override;
+  void linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) override;
+  void linearize(const Vector& x, const Vector& v, std::shared_ptr<BlockLinearSystem>& linear);
+  /// A new one.
+  std::shared_ptr<BlockLinearSystem> linearization(const State<Vector>& state);
   double kinetic_energy(const Vector& v) override;
   double elastic_energy(const Vector& x) const;
   double potential_energy(const Vector& x) override;
@@ -85,7 +95,7 @@ class Scene final : public System {
  private:
   void number_particles(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,
                         const std::vector<int>& pinned);
-  BlockLinearSystem& linear();  // made when it is first needed
+  void make_patterns();
 
   int free_count_ = 0;
   std::vector<int> number_;              // particle -> its place: free ones first, then pinned ones
@@ -98,7 +108,7 @@ class Scene final : public System {
   SolverOptions solver_;
   std::vector<double> mass_, inverse_mass_;  // of the free particles [kg, 1/kg]
   SceneTerms terms_;
-  std::unique_ptr<BlockLinearSystem> linear_;  // none until a linearization is asked for
+  SharedPattern stiffness_pattern_, damping_pattern_;  // none until a linearization is asked for
 };
 
 }  // namespace springstab

@@ -115,12 +115,12 @@ Couplings ParticlePairs::couplings() const {
   return pairs;
 }
 
-void ParticlePairs::bind(const BlockSparseMatrix& matrix) {
-  bound_ = &matrix;
+void ParticlePairs::bind(const SharedPattern& pattern) {
+  pattern_ = pattern;
   place_.clear();
   for (int i = 0; i < free_count_; ++i)
     for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m)
-      place_.push_back(find_place(matrix, i, incident_[m].other));
+      place_.push_back(find_place(*pattern, i, incident_[m].other));
 }
 
 template <class At>
@@ -164,13 +164,13 @@ void ParticlePairs::keep(const Numbers& a, const Numbers& b, const Vectors& u, i
 }
 
 void ParticlePairs::add_kept_blocks(BlockSparseMatrix& matrix) const {
-  const bool known = bound_ == &matrix;
+  const bool known = pattern_ == matrix.pattern();
   for (int i = 0; i < free_count_; ++i) {
     SpringBlock sum;
     for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m) {
       const SpringBlock block(kept_[incident_[m].pair]);
       sum += block;
-      const long place = known ? place_[m] : find_place(matrix, i, incident_[m].other);
+      const long place = known ? place_[m] : find_place(*matrix.pattern(), i, incident_[m].other);
       if (place >= 0) add(block, -1, matrix.block(place));
     }
     add(sum, 1, matrix.block(matrix.diagonal(i)));

@@ -36,7 +36,7 @@ class ParticlePairs {
 
   int size() const { return size_; }
   Couplings couplings() const;
-  void bind(const BlockSparseMatrix& matrix);
+  void bind(const SharedPattern& pattern);
 
   /// Calls work(begin, count) for every batch.
   template <class Work>
@@ -69,10 +69,10 @@ class ParticlePairs {
     return {runs_.data() + run_start_[batch], runs_.data() + run_start_[batch + 1]};
   }
 
-  /// Where the block that a pair of i and another particle stands for is in row i of a matrix; -1 if it lies
+  /// Where the block that a pair of i and another particle stands for is in row i of a pattern; -1 if it lies
   /// above the diagonal or the other one is pinned.
-  static long find_place(const BlockSparseMatrix& matrix, int i, int other) {
-    return other < i ? matrix.find(i, other) : -1;
+  static long find_place(const BlockPattern& pattern, int i, int other) {
+    return other < i ? pattern.find(i, other) : -1;
   }
 
   int size_, free_count_;
@@ -82,10 +82,10 @@ class ParticlePairs {
   struct Incident {
     int pair, other;
   };
-  const BlockSparseMatrix* bound_ = nullptr;
+  SharedPattern pattern_;             // that places are known of
   std::vector<long> incident_start_;  // the pairs of each free particle, in compressed rows
   std::vector<Incident> incident_;
-  std::vector<long> place_;  // of each incident pair in the bound matrix
+  std::vector<long> place_;  // of each incident pair in the pattern
   mutable std::vector<Kept> kept_;
 };
 
@@ -101,7 +101,7 @@ class Springs final : public ElasticTerm {
   void add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const override;
   void add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const override;
   Couplings couplings() const override { return pairs_.couplings(); }
-  void bind(const BlockSparseMatrix& stiffness) override { pairs_.bind(stiffness); }
+  void bind(const SharedPattern& pattern) override { pairs_.bind(pattern); }
   void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
   /// Without the transverse stiffness k_s (1 - l0/l) where a spring is shorter than at rest.
   void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
@@ -123,7 +123,7 @@ class AxialDamping final : public DampingTerm {
   int size() const override { return pairs_.size(); }
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
   Couplings couplings() const override { return pairs_.couplings(); }
-  void bind(const BlockSparseMatrix& damping) override { pairs_.bind(damping); }
+  void bind(const SharedPattern& pattern) override { pairs_.bind(pattern); }
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;
 
  private:

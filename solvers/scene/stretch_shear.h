@@ -42,7 +42,7 @@ class StretchShear final : public ElasticTerm {
 
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
-  void bind(const BlockSparseMatrix& stiffness) override { places_.bind(triangles_->elements(), stiffness); }
+  void bind(const SharedPattern& pattern) override { places_.bind(triangles_->elements(), pattern); }
 
  private:
   template <bool with_force>

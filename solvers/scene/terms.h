@@ -55,8 +55,9 @@ class ElasticTerm {
     add_stiffness_times(x, v, -alpha, force);
   }
   virtual Couplings couplings() const = 0;
-  /// Lets a term look up where its blocks are: called once, with the matrix that add_stiffness will be given.
-  virtual void bind(const BlockSparseMatrix&) {}
+  /// Lets a term look up where its blocks are: called once, with the pattern of the matrices that
+  /// add_stiffness will be given.
+  virtual void bind(const SharedPattern&) {}
   /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
   virtual void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;
   /// stiffness += a positive semidefinite matrix that is K(x) wherever that is positive semidefinite element
@@ -73,8 +74,8 @@ class DampingTerm {
   /// force -= C(x) v [N].
   virtual void add_force(const ParticleField& x, const ParticleField& v, double* force) const = 0;
   virtual Couplings couplings() const = 0;
-  /// Likewise with the matrix that add_damping will be given.
-  virtual void bind(const BlockSparseMatrix&) {}
+  /// Likewise with the pattern of those that add_damping will be given.
+  virtual void bind(const SharedPattern&) {}
   /// damping += C(x) [N·s/m]. The change of C with x is neglected, as everywhere.
   virtual void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const = 0;
 };

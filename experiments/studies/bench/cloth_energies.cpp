@@ -51,8 +51,8 @@ void run(benchmark::State& state, Part part, const Work& work) {
   const Couplings more = bending.couplings();
   couplings.insert(couplings.end(), more.begin(), more.end());
   BlockSparseMatrix matrix(c.free_count, couplings);
-  membrane.bind(matrix);
-  bending.bind(matrix);
+  membrane.bind(matrix.pattern());
+  bending.bind(matrix.pattern());
   const ParticleField x{c.x.data(), c.pinned.data(), c.free_count};
   for (auto _ : state) {
     if (part != Part::bending) work(membrane, x, c, matrix);

@@ -84,7 +84,8 @@ BENCHMARK(read)->Unit(benchmark::kMillisecond);
 
 void product(benchmark::State& state) {
   Net& n = net(static_cast<int>(state.range(0)));
-  const BlockSparseMatrix& k = n.scene->linearized(n.state.x, n.state.v).stiffness();
+  const auto linear = n.scene->linearization(n.state);
+  const BlockSparseMatrix& k = linear->stiffness();
   Vector out(n.state.x.size());
   run(state, n, product_bytes(k), 0, [&] { k.multiply(n.state.x.data(), out.data()); });
 }
@@ -92,7 +93,8 @@ void product(benchmark::State& state) {
 // The loop that anyone would write.
 void plain_product(benchmark::State& state) {
   Net& n = net(static_cast<int>(state.range(0)));
-  const BlockSparseMatrix& k = n.scene->linearized(n.state.x, n.state.v).stiffness();
+  const auto linear = n.scene->linearization(n.state);
+  const BlockSparseMatrix& k = linear->stiffness();
   Vector out(n.state.x.size());
   run(state, n, product_bytes(k), 0, [&] {
     out.setZero();
@@ -109,24 +111,24 @@ void plain_product(benchmark::State& state) {
 template <class Work>
 void run_in_products(benchmark::State& state, const Work& work) {
   Net& n = net(static_cast<int>(state.range(0)));
-  BlockLinearSystem& linear = n.scene->linearized(n.state.x, n.state.v);
-  run(state, n, 0, product_seconds(linear.stiffness(), n.state.x), [&] { work(n, linear); });
+  auto linear = n.scene->linearization(n.state);
+  run(state, n, 0, product_seconds(linear->stiffness(), n.state.x), [&] { work(n, linear); });
 }
 
 void force(benchmark::State& state) {
   Vector a;
   net(static_cast<int>(state.range(0))).scene->set_damping({1, 0});
-  run_in_products(state, [&](Net& n, BlockLinearSystem&) { n.scene->acceleration(n.state.x, n.state.v, a); });
+  run_in_products(state, [&](Net& n, const auto&) { n.scene->acceleration(n.state.x, n.state.v, a); });
   net(static_cast<int>(state.range(0))).scene->set_damping({1, 1e-3});
 }
 
 void damped_force(benchmark::State& state) {
   Vector a;
-  run_in_products(state, [&](Net& n, BlockLinearSystem&) { n.scene->acceleration(n.state.x, n.state.v, a); });
+  run_in_products(state, [&](Net& n, const auto&) { n.scene->acceleration(n.state.x, n.state.v, a); });
 }
 
 void assembly(benchmark::State& state) {
-  run_in_products(state, [](Net& n, BlockLinearSystem&) { n.scene->linearized(n.state.x, n.state.v); });
+  run_in_products(state, [](Net& n, auto& linear) { n.scene->linearize(n.state.x, n.state.v, linear); });
 }
 
 // A step of linearized explicit Euler: one product with K of x + alpha v, and two vectors advanced.
@@ -134,28 +136,28 @@ void linear_substep(benchmark::State& state) {
   const auto stepper = Method("explicit-euler").stepper();
   State<Vector> s = net(static_cast<int>(state.range(0))).state;
   s.x *= 1e-6;  // a small displacement
-  run_in_products(state, [&](Net&, BlockLinearSystem& linear) {
-    stepper->step(linear, 1e-9, s);  // too short to move far
+  run_in_products(state, [&](Net&, const auto& linear) {
+    stepper->step(*linear, 1e-9, s);  // too short to move far
   });
 }
 
 void implicit_step(benchmark::State& state, Preconditioner preconditioner, double tolerance) {
   const auto stepper = Method("implicit-euler").stepper();
   State<Vector> s;
-  run_in_products(state, [&](Net& n, BlockLinearSystem& linear) {
-    linear.solver = {.tolerance = tolerance, .preconditioner = preconditioner};
+  Net& n = net(static_cast<int>(state.range(0)));
+  n.scene->solver() = {.tolerance = tolerance, .preconditioner = preconditioner};
+  run_in_products(state, [&](Net&, const auto&) {
     s = n.state;
     stepper->step(*n.scene, h_implicit, s);
   });
-  Net& n = net(static_cast<int>(state.range(0)));
-  BlockLinearSystem& linear = n.scene->linearized(n.state.x, n.state.v);
+  const auto linear = n.scene->linearization(n.state);
   Vector a, y;
   n.scene->acceleration(n.state.x, n.state.v, a);
-  linear.stiffness_times(n.state.v, y);
+  linear->stiffness_times(n.state.v, y);
   a = h_implicit * (a - h_implicit * y);
   state.counters["iterations"] =
-      static_cast<double>(linear.solve_shifted({1, h_implicit, h_implicit * h_implicit}, a, y).iterations);
-  linear.solver = {};
+      static_cast<double>(linear->solve_shifted({1, h_implicit, h_implicit * h_implicit}, a, y).iterations);
+  n.scene->solver() = {};
 }
 
 const bool registered = [] {

@@ -39,8 +39,10 @@ HeatResult run(const Heat& heat, double duration, const CommonOptions& common) {
   if (!plan) throw std::runtime_error(heat.contestant.name + ": " + reason_text(chooser));
   const State<Vector> start = subject.initial_state(common.seed);
   const MethodInfo& method = Method(heat.contestant.method).info();
-  if (method.implicit || method.linearized)  // makes the matrix: set-up, not part of the run
-    subject.system().linearized(start.x, start.v);
+  if (method.implicit || method.linearized) {  // finds where the blocks are: set-up, not part of the run
+    Linearization<Vector> linear;
+    subject.system().linearize(start.x, start.v, linear);
+  }
   const MeasuredRun measured = measured_run(subject.system(), heat.contestant.method, *plan,
                                             chooser.watch(start), start, {}, chooser.policy());
   HeatResult result;

@@ -70,7 +70,7 @@ double spectral_radius_at(const Case& c, double h) {
 // how small they are.
 bool linear_run_diverges(Scene& scene, const State<Vector>& start, const Case& c, double h, long steps,
                          std::uint64_t seed) {
-  BlockLinearSystem& linear = scene.linearized(start.x, start.v);
+  BlockLinearSystem linear = *scene.linearization(start);
   State<Vector> state{Vector(linear.size()), Vector::Zero(linear.size())};
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -17,6 +17,7 @@
 #include "scratch.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/methods/list.h"
+#include "solvers/scene/element_term.h"
 #include "solvers/scene/elements.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/simulation.h"
@@ -101,6 +102,18 @@ BOOST_AUTO_TEST_CASE(a_term_of_ones_own_joins_a_scene) {
   Scene scene = small_scene();
 #include "examples/solvers/scene/terms.h"
   BOOST_TEST(scene.terms().elastic.back()->size() == 1);
+}
+
+BOOST_AUTO_TEST_CASE(a_term_is_an_elements_energy) {
+  const SpringNet net = make_net(Grid{4, 4}, SpringMaterial{});
+  Scene scene(net, {0, 3}, {0, 0, 0}, {});
+#include "examples/solvers/scene/element_term.h"
+  State<Vector> state = scene.rest_state();
+  state.x.array() += 0.1;
+  const double moved = scene.elastic_energy(state.x);
+  BOOST_TEST(scene.terms().elastic.back()->energy(scene.position_field(state.x)) == 5 * 0.03 / 2,
+             boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(moved > 5 * 0.03 / 2);
 }
 
 BOOST_AUTO_TEST_CASE(what_elements_compute_reaches_their_particles) {

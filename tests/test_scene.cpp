@@ -14,6 +14,7 @@
 #include "solvers/linear/dense_solvers.h"
 #include "solvers/linear/structural_matrices.h"
 #include "solvers/methods/rk4.h"
+#include "solvers/scene/element_term.h"
 #include "solvers/scene/scene.h"
 #include "solvers/scene/springs.h"
 #include "solvers/stepper.h"
@@ -629,6 +630,43 @@ BOOST_AUTO_TEST_CASE(a_users_term_acts_beside_those_of_a_net) {
     // Rayleigh damping resists with the term's stiffness, too.
     const Vector damped = force(with, x, v) - force(without, x, v) - more_force(x);
     check_equal(damped, Vector(-damping.alpha * (added * v)), 1e-9);
+  });
+}
+
+/// ½ k (l - l0)² of two corners.
+ElementEnergy<2> spring_energy(double k, double rest, const Eigen::Matrix<double, 3, 2>& at) {
+  const Vector3d d = at.col(0) - at.col(1), n = d.normalized();
+  const double l = d.norm();
+  const Eigen::Matrix3d block =
+      k * ((1 - rest / l) * (Eigen::Matrix3d::Identity() - n * n.transpose()) + n * n.transpose());
+  ElementEnergy<2> e{k * (l - rest) * (l - rest) / 2, {}, {}};
+  e.gradient << k * (l - rest) * n, -k * (l - rest) * n;
+  e.hessian << block, -block, -block, block;
+  return e;
+}
+
+// Springs said as elements are springs: pinned ends, every product, and the projection.
+BOOST_AUTO_TEST_CASE(a_term_from_an_elements_energy_is_that_term) {
+  for_each_pose([](const SpringNet& net, const Pose& pose, Random& random) {
+    std::vector<std::array<int, 2>> ends;
+    std::vector<Spring> springs;
+    for (const Spring& s : net.springs)
+      if (s.stiffness > 0) ends.push_back({s.j, s.i}), springs.push_back(s);
+    const RayleighDamping damping{0.3, 0.02};
+    const TermMaker law = element_term<2>("springs", ends, [springs](int e, const auto& at) {
+      return spring_energy(springs[e].stiffness, springs[e].rest_length, at);
+    });
+    SpringNet elastic = net;
+    for (Spring& s : elastic.springs) s.damping = 0;
+    Scene theirs(elastic, some_pins, Vector3d::Zero(), damping),
+        ours(net.rest, net.mass, law, some_pins, Vector3d::Zero(), damping);
+    const Vector x = take(theirs, pose, some_pins), v = random.vector(x.size(), 1);
+    take(ours, pose, some_pins);
+    BOOST_TEST(ours.elastic_energy(x) == theirs.elastic_energy(x), tolerance(1e-12));
+    check_equal(force(ours, x, v), force(theirs, x, v), 1e-12);
+    check_equal(stiffness(ours, x), stiffness(theirs, x), 1e-12);
+    for (Scene* scene : {&ours, &theirs}) scene->set_hessian(Hessian::projected);
+    check_equal(stiffness(ours, x), stiffness(theirs, x), 1e-12);
   });
 }
 

@@ -37,8 +37,8 @@ do for [i = 1:5] {
     set title sprintf("%s\n{/*0.8 %s differ, %s outside the band}", word(titles, i), word(facts, 5), word(facts, 7)) \
         font ',13'
     plot file . '_boundary.csv' using 2:3 with lines lw 1 lc rgb edge_colour, \
-         file . '.csv' every thin using ($4 == 0 ? $1 : NaN):2 with points pt 7 ps 0.12 lc rgb bounded_colour, \
-         '' every thin using ($4 == 1 ? $1 : NaN):2 with points pt 7 ps 0.12 lc rgb diverged_colour
+         file . '.csv' every thin using ($4 == 0 ? $1 : NaN):2 with points pt 7 ps 0.3 lc rgb bounded_colour, \
+         '' every thin using ($4 == 1 ? $1 : NaN):2 with points pt 7 ps 0.3 lc rgb diverged_colour
 }
 
 set key at graph 0.02, 0.98 top left Left reverse samplen 2 font ',10'

@@ -164,7 +164,7 @@ BOOST_AUTO_TEST_CASE(a_method_of_ones_own_has_a_region_and_runs) {
   Scene scene = small_scene();
   State<Vector> state = scene.rest_state();
   const StepPlan plan{1e-4, 10};
-  const EnergyWatch watch;
+  const EnergyWatch watch{.gravity = 9.81, .mass = scene.total_free_mass()};
 #include "examples/analysis/method.h"
   BOOST_TEST(y_max == stability_region("explicit-euler").constants().y_max);
   BOOST_TEST(rk4.info().order == 4);
@@ -197,6 +197,7 @@ BOOST_AUTO_TEST_CASE(a_structure_has_three_sources) {
 
 BOOST_AUTO_TEST_CASE(a_chooser_plans_a_run) {
   Model model(std::make_unique<Scene>(small_scene()));
+  model.design_damping();
 #include "examples/analysis/limits/step_policy.h"
   BOOST_TEST(plan.h > 0);
   BOOST_TEST(state.v.norm() > 0);

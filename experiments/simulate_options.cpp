@@ -64,7 +64,7 @@ Subcommand simulate_command() {
            Option("--cg-tolerance", &o->cg_tolerance,
                   "relative residual of implicit Euler's conjugate gradients")
                .with_default(),
-           resume_option(o->resume)}),
+           resume_option(o->earlier), overwrite_option(o->earlier)}),
       .run = [o](const CommonOptions& common) {
         o->designed_damping = o->damping == "designed";
         o->projected_hessian = o->hessian == "projected";

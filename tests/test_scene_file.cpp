@@ -67,14 +67,14 @@ BOOST_AUTO_TEST_CASE(every_field_that_is_written_arrives) {
     "geometry": {"spacing": 0.5, "grid": [7, 9]},
     "damping": {"alpha": 1e-3, "d0": 2},
     "gravity": [1, -2.5, 3e0],
-    "material": {"name": "stiff", "area_density": 0.3, "particle_mass": 1.25e-4, "structural": 11, "shear": 12,
+    "material": {"name": "stiff", "particle_mass": 1.25e-4, "structural": 11, "shear": 12,
                  "bending": 13, "damping": {"structural": 0.01, "shear": 0.02, "bending": 0.03}},
     "pins": [6, 0, 5, 6]
   })");
   const SceneDescription scene = read_scene_file(file.path());
   const Grid& grid = std::get<Grid>(scene.geometry);
   BOOST_TEST((grid.rows == 7 && grid.columns == 9 && grid.spacing == 0.5));
-  BOOST_TEST(springs(scene).area_density == 0.3);
+  BOOST_TEST(springs(read(with(R"("material": {"area_density": 0.3})"))).area_density == 0.3);
   BOOST_TEST(springs(scene).particle_mass.value() == 1.25e-4);
   check_equal(springs(scene).stiffness, {11, 12, 13});
   check_equal(springs(scene).damping, {0.01, 0.02, 0.03});
@@ -217,6 +217,10 @@ BOOST_AUTO_TEST_CASE(a_scene_that_breaks_the_schema_is_refused_at_its_line) {
       {with("\"material\": [1]"), 2, "'material' is an array"},
       {with("\"material\": {\n\"name\": \"stif\"}"), 3, "did you mean 'stiff'?"},
       {with("\"material\": {\"name\": 1}"), 2, "'name' is 1"},
+      {with("\"material\": {\n\"particle_mass\": 0.1,\n\"area_density\": 0.2}"), 4,
+       "'particle_mass' stands beside 'area_density', expected one of them"},
+      {with("\"material\": {\"model\": \"baraff-witkin\", \"area_density\": 0.2,\n\"particle_mass\": 1}"), 3,
+       "'particle_mass' stands beside 'area_density', expected one of them"},
       {with("\"material\": {\n\"area_density\": -0.2}"), 3,
        "'area_density' is -0.2, expected a positive number"},
       {with("\"material\": {\n\"particle_mass\": 0}"), 3, "'particle_mass' is 0"},

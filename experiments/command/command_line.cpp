@@ -77,7 +77,11 @@ int run_command(int argc, const char* const* argv) {
     CLI::App* added = app.add_subcommand(subcommand.name, subcommand.title);
     for (const Option& option : subcommand.options) add(*added, option);
     added->footer(subcommand.footer);
-    added->callback([&] { chosen = &subcommand; });
+    added->callback([&, added] {
+      chosen = &subcommand;
+      for (const CLI::Option* option : added->get_options())
+        if (option->count() > 0) common.given.insert(option->get_name());
+    });
   }
 
   exit_on_interrupt("nothing was saved");

@@ -56,6 +56,7 @@ struct SceneDescription {
   Eigen::Vector3d gravity{0, -9.81, 0};  // [m/s²]
   RayleighDescription damping;
   InitialDescription initial;
+  double scale = 1;  // of the geometry: what its numbers are [m]
 };
 
 /// The same particles by ascending ranges that are apart from each other.

@@ -272,14 +272,18 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                          {.safety = options.safety, .seed = common.seed, .max_step = options.max_step});
 
   std::vector<Row> rows;
+  std::optional<Waiting> waiting(std::in_place, "limits", common.quiet);
+  waiting->now("k0");
   int status = answer.k0().converged ? done : no_answer;
   for (const Method& method : all_methods()) {
     if (!options.method.empty() && method.name() != options.method) continue;
+    waiting->now(method.name());
     const MethodLimits& limits = answer.limits(method);
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
+  waiting.reset();
   if (common.json) {
     print_json(report(answer, rows, options.safety, subject));
   } else {

@@ -39,6 +39,8 @@ void check(const SimulateOptions& options) {
   if (options.frames < 1 || options.frames > most_frames)
     throw InputError("--frames", 0, text("is %d, expected 1 to %d", options.frames, most_frames));
   if (options.earlier.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
+  if (options.keep_diverged && options.output.empty())
+    throw InputError("--keep-diverged", 0, "needs --output, the folder for the frames");
 }
 
 // All that decides what a run does and writes.
@@ -57,6 +59,7 @@ Json identity(const CommonOptions& common, const SimulateOptions& o) {
                       {"cg-tolerance", o.cg_tolerance},
                       {"format", o.format},
                       {"frames", o.frames},
+                      {"keep-diverged", o.keep_diverged},
                       {"seed", common.seed}},
                      contents_of(o.input, o.earlier.resume));
 }
@@ -157,14 +160,19 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   std::optional<Recorder> recorder;
   const StopOnInterrupt interrupt;
   const Course course = run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder);
+  if (course.diverged()) recorder->record_last();
   if (!course.stopped) recorder->flush();  // a full disk shows before the report
 
   if (common.json) {
     Json report = json_of(course, options, subject, chooser, recorder->written());
+    if (options.keep_diverged) report["diverged_frames"] = recorder->last_steps();
     if (options.explain) report["explanation"] = explanation;
     print_json(report);
   } else {
     print_report(course, options, subject, chooser, recorder->written());
+    if (recorder->last_steps() > 0)
+      std::cout << text("the last %d of them are single steps, up to the divergence\n",
+                        recorder->last_steps());
   }
   if (course.stopped) {
     std::cerr << "springstab: interrupted; " << saved(*recorder, checkpoint, options) << '\n';

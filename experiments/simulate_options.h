@@ -25,6 +25,7 @@ struct SimulateOptions {
   int frames = 100;
   double cg_tolerance = 1e-6;
   bool direct = false;  // a factorization instead of conjugate gradients
+  bool keep_diverged = false;
   EarlierRun earlier;
 };
 

@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 #include <filesystem>
 
+#include "experiments/command/words.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
 #include "tests/refusals.h"
@@ -147,6 +148,9 @@ BOOST_AUTO_TEST_CASE(a_suggestion_is_near_or_absent) {
   BOOST_TEST(expected_one_of("colour", {"grid", "spacing", "mesh"}) ==
              "expected 'grid', 'spacing' or 'mesh'");
   BOOST_TEST(expected_one_of("x", {"grid"}) == "expected 'grid'");
+  BOOST_TEST(did_you_mean("RK4", {"rk2", "rk4"}) == " (did you mean 'rk4'?)");
+  BOOST_TEST(did_you_mean("Symplectic_Euler", {"explicit-euler", "symplectic-euler"}) ==
+             " (did you mean 'symplectic-euler'?)");
 }
 
 BOOST_AUTO_TEST_CASE(broken_json_is_refused_at_its_line) {

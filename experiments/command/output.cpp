@@ -184,6 +184,32 @@ FolderLock::~FolderLock() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
+Waiting::Waiting(std::string label, bool quiet) : label_(std::move(label)) {
+  if (!quiet && isatty(STDERR_FILENO)) thread_ = std::thread([this] { show(); });
+}
+
+Waiting::~Waiting() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  end_.notify_one();
+  thread_.join();
+}
+
+void Waiting::now(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  what_ = what;
+}
+
+void Waiting::show() {
+  std::unique_lock lock(mutex_);
+  for (int seconds = 1; !end_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; }); ++seconds)
+    std::cerr << "\r\033[K" << label_ << ": " << what_ << ", " << seconds << " s" << std::flush;
+  std::cerr << "\r\033[K" << std::flush;
+}
+
 Progress::Progress(std::string label, bool quiet)
     : label_(std::move(label)),
       enabled_(!quiet && isatty(STDERR_FILENO)),

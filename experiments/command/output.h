@@ -3,11 +3,14 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <thread>
 
 namespace springstab {
 
@@ -80,6 +83,26 @@ class FolderLock {
 
  private:
   int descriptor_;
+};
+
+/// For what cannot tell how far it is: on stderr what is done "now", and for how many seconds, once that
+/// takes more than one, if stderr is a terminal and not `quiet`.
+class Waiting {
+ public:
+  Waiting(std::string label, bool quiet);
+  ~Waiting();  // erases the line
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+  void now(const std::string& what);
+
+ private:
+  void show();
+
+  std::string label_, what_;
+  bool ended_ = false;
+  std::mutex mutex_;
+  std::condition_variable end_;
+  std::thread thread_;  // last: it uses the others
 };
 
 /// A bar on stderr for what takes more than a second, if stderr is a terminal and not `quiet`.

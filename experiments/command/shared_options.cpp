@@ -22,6 +22,9 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
           .shown_as("NxM"),
       Option("--spacing", &input.spacing, "distance s of the grid's particles (default 0.025)")
           .shown_as("[m]"),
+      Option("--diagonals", &input.diagonals, "of a grid of triangles: uniform (default) or alternating")
+          .shown_as("WORD")
+          .one_of({"uniform", "alternating"}),
       Option("--scale", &input.scale, "of a mesh's or grid's lengths: 0.001 makes millimetres metres")
           .shown_as("S"),
       Option("--material", &input.material, "default, soft, stiff (springs), and for surfaces baraff-witkin")

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "experiments/command/words.h"
+#include "experiments/inputs/grid.h"
 #include "experiments/inputs/json_with_lines.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
@@ -16,7 +18,8 @@ class SceneReader {
   explicit SceneReader(const std::string& source) : source_(source) {}
 
   SceneDescription scene(const JsonValue& json) const {
-    expect_members(json, {"geometry", "material", "pins", "gravity", "damping", "initial", "scale"});
+    expect_members(json,
+                   {"geometry", "material", "pins", "gravity", "damping", "initial", "scale", "diagonals"});
     SceneDescription scene;
     const JsonValue* geometry_json = find(json, "geometry");
     if (!geometry_json)
@@ -25,6 +28,11 @@ class SceneReader {
     scene.geometry = geometry(*geometry_json);
     if (const JsonValue* value = beside_or_in(json, *geometry_json, "scale"))
       scene.scale = number(*value, Sign::positive);
+    if (const JsonValue* value = beside_or_in(json, *geometry_json, "diagonals")) {
+      Grid* const grid = std::get_if<Grid>(&scene.geometry);
+      if (!grid) fail(value->key_line, "'diagonals' stands with 'mesh', expected it with 'grid' only");
+      grid->diagonals = parse_diagonals(text(*value, "'uniform' or 'alternating'"), source_, value->line);
+    }
     const JsonValue* material_json = find(json, "material");
     const bool solid = is_solid(scene.geometry);
     scene.material = material_json ? material(*material_json, solid)
@@ -119,7 +127,7 @@ class SceneReader {
   }
 
   Geometry geometry(const JsonValue& json) const {
-    expect_members(json, {"grid", "spacing", "mesh", "scale"});
+    expect_members(json, {"grid", "spacing", "mesh", "scale", "diagonals"});
     const JsonValue *grid_json = find(json, "grid"), *mesh = find(json, "mesh"),
                     *spacing = find(json, "spacing");
     if (!grid_json == !mesh)

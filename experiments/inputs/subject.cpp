@@ -28,8 +28,9 @@ SceneDescription describe(const InputOptions& options) {
     throw InputError("--scale", 0,
                      "is " + springstab::shown(*options.scale) + ", expected a positive number");
   if (is_scene_file(options.file)) {
-    if (options.spacing || !options.material.empty() || !options.pin.empty())
-      throw InputError(options.file, 0, "--spacing, --material and --pin stand in the scene file itself");
+    if (options.spacing || !options.material.empty() || !options.pin.empty() || !options.diagonals.empty())
+      throw InputError(options.file, 0,
+                       "--spacing, --diagonals, --material and --pin stand in the scene file itself");
     SceneDescription description = read_scene_file(options.file);
     if (options.scale && description.scale != 1)
       throw InputError(options.file, 0,
@@ -41,10 +42,12 @@ SceneDescription describe(const InputOptions& options) {
   description.scale = options.scale.value_or(1);
   if (options.grid.empty()) {
     if (options.spacing) throw InputError("--spacing", 0, "is for --grid only");
+    if (!options.diagonals.empty()) throw InputError("--diagonals", 0, "is for --grid only");
     description.geometry = options.file;
   } else {
     Grid grid = parse_grid(options.grid, "--grid");
     if (options.spacing) grid.spacing = *options.spacing;
+    if (!options.diagonals.empty()) grid.diagonals = parse_diagonals(options.diagonals, "--diagonals");
     check(grid, "--grid");
     description.geometry = grid;
   }
@@ -163,9 +166,10 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
 }
 
 void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
-  if (options.spacing || !options.material.empty() || !options.pin.empty() || options.scale)
+  if (options.spacing || !options.material.empty() || !options.pin.empty() || options.scale ||
+      !options.diagonals.empty())
     throw InputError(options.stiffness, 0,
-                     "--spacing, --scale, --material and --pin are for grids and meshes");
+                     "--spacing, --diagonals, --scale, --material and --pin are for grids and meshes");
   const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
   const auto read = [&](const std::string& path) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
@@ -189,6 +193,8 @@ void Subject::build_scene(const SceneDescription& description) {
     Grid grid = std::get<Grid>(description.geometry);
     grid.spacing *= description.scale;
     faces_ = grid_faces(grid);
+    unused_diagonals_ = grid.diagonals == Diagonals::alternating &&
+                        !std::holds_alternative<ClothMaterial>(description.material);
     return visit_cloth(description.material, "--grid", [&](const auto& material) {
       const auto cloth = make(grid, material);
       place(cloth, description, pinned_particles(description.pins, grid), "--grid");

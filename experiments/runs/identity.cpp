@@ -52,6 +52,7 @@ Json contents_of(const InputOptions& input, bool resume) {
                                                               {"mass", input.mass},
                                                               {"damping-matrix", input.damping_matrix}};
   for (const auto& [name, file] : files) contents[name] = file.empty() ? Json() : contents_of(file, resume);
+  if (!input.diagonals.empty()) contents["diagonals"] = input.diagonals;
   if (input.scale) contents["scale"] = number(input.scale);
   if (!input.rayleigh.empty()) contents["rayleigh"] = input.rayleigh;
   if (input.sum_duplicates) contents["sum-duplicates"] = true;

@@ -10,6 +10,13 @@
 namespace springstab {
 namespace {
 
+constexpr std::size_t most_last = 32;  // steps
+
+Vector vector_of(const Json& json) {
+  const auto numbers = json.get<std::vector<double>>();
+  return Vector::Map(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
 // Of a file that cannot be read, the hash of what could.
 Fnv1a hash_of_file(const std::string& path) {
   Fnv1a hash;
@@ -31,6 +38,8 @@ Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json&
     for (int frame = 0; subject.scene() && frame < written(); ++frame)
       expect_frame(options.output, options.format, frame);
     on_disk_ = written();
+    for (const Json& moment : kept.value("last", Json::array()))
+      last_.push_back({moment[0], {vector_of(moment[1]), vector_of(moment[2])}});
   }
   if (options.output.empty() || subject.scene()) return;
   const std::string path = options.output + "/trajectory.csv";
@@ -54,12 +63,39 @@ void Recorder::write_row(const std::string& row) {
 
 void Recorder::record(double t, const State<Vector>& state) {
   if (options_.output.empty()) return;
+  if (keeps_last()) remember(t, state);
   while (!frames_.empty() && t < frames_.back().t) {  // a divergence was undone
     due_ = frames_.back().due;
     frames_.pop_back();
     on_disk_ = std::min(on_disk_, written());
   }
   if (t < next_time()) return;
+  write(t, state);
+  while (next_time() <= t && due_ <= options_.frames) ++due_;
+}
+
+void Recorder::remember(double t, const State<Vector>& state) {
+  while (!last_.empty() && t <= last_.back().t) last_.pop_back();  // a divergence was undone
+  Moment moment;
+  if (last_.size() == most_last) {  // into the memory it has
+    moment = std::move(last_.front());
+    last_.pop_front();
+  }
+  moment.t = t;
+  moment.state.x = state.x;
+  moment.state.v = state.v;
+  last_.push_back(std::move(moment));
+}
+
+void Recorder::record_last() {
+  for (const Moment& moment : last_) {
+    if (!frames_.empty() && moment.t <= frames_.back().t) continue;
+    write(moment.t, moment.state);
+    ++last_steps_;
+  }
+}
+
+void Recorder::write(double t, const State<Vector>& state) {
   if (subject_.scene()) {
     write_frame(options_.output, options_.format, written(), subject_.vertices(state.x), subject_.faces());
   } else {
@@ -70,7 +106,6 @@ void Recorder::record(double t, const State<Vector>& state) {
   }
   frames_.push_back({t, due_});
   most_ = std::max(most_, written());
-  while (next_time() <= t && due_ <= options_.frames) ++due_;
 }
 
 void Recorder::flush() {
@@ -85,6 +120,9 @@ Json Recorder::kept() {
   for (; subject_.scene() && on_disk_ < written(); ++on_disk_)
     sync_file(frame_path(options_.output, options_.format, on_disk_));
   sync_folder(options_.output);
+  for (const auto& [t, state] : last_)
+    kept["last"].push_back({t, std::vector<double>(state.x.begin(), state.x.end()),
+                            std::vector<double>(state.v.begin(), state.v.end())});
   return kept;
 }
 

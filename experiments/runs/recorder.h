@@ -1,6 +1,7 @@
 // What a run of `simulate` writes as it goes: frames of a scene, or rows of a CSV file for matrices.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,10 @@ class Recorder {
 
   /// What lies after t is taken back first: a divergence was undone.
   void record(double t, const State<Vector>& state);
+  /// With --keep-diverged, for a run that has diverged: what it saw last, each step, up to 32 of them.
+  void record_last();
+  int last_steps() const { return last_steps_; }
+
   /// Hands what was recorded to the system. Throws InputError if it does not take it.
   void flush();
   /// Where it is; what was recorded is on disk by then.
@@ -31,6 +36,9 @@ class Recorder {
   int written() const { return static_cast<int>(frames_.size()); }
 
  private:
+  bool keeps_last() const { return options_.keep_diverged && !options_.output.empty(); }
+  void remember(double t, const State<Vector>& state);
+  void write(double t, const State<Vector>& state);
   void write_row(const std::string& row);
 
   // A hair early: the time of a step is a rounded sum.
@@ -47,6 +55,12 @@ class Recorder {
   std::vector<Frame> frames_;
   int due_ = 0, most_ = 0;
   int on_disk_ = 0;  // frames
+  struct Moment {
+    double t;  // [s]
+    State<Vector> state;
+  };
+  std::deque<Moment> last_;  // if they are to be kept, in the order of time
+  int last_steps_ = 0;       // of these, recorded
 };
 
 }  // namespace springstab

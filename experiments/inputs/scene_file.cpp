@@ -20,12 +20,12 @@ class SceneReader {
   SceneDescription scene(const JsonValue& json) const {
     expect_members(json,
                    {"geometry", "material", "pins", "gravity", "damping", "initial", "scale", "diagonals"});
-    SceneDescription scene;
     const JsonValue* geometry_json = find(json, "geometry");
     if (!geometry_json)
       fail(json.line,
            "'geometry' is missing, expected {\"grid\": [rows, columns]} or {\"mesh\": \"cloth.obj\"}");
-    scene.geometry = geometry(*geometry_json);
+    SceneDescription scene{
+        .geometry = geometry(*geometry_json), .material = {}, .pins = {}, .damping = {}, .initial = {}};
     if (const JsonValue* value = beside_or_in(json, *geometry_json, "scale"))
       scene.scale = number(*value, Sign::positive);
     if (const JsonValue* value = beside_or_in(json, *geometry_json, "diagonals")) {

@@ -1,7 +1,5 @@
 #include "analysis/method.h"
 
-#include <stdexcept>
-
 #include "solvers/methods/list.h"
 
 namespace springstab {
@@ -13,7 +11,8 @@ const Method& built_in(std::string_view name) {
     if (method.name() == name) return method;
     known += (known.empty() ? "" : ", ") + method.name();
   }
-  throw std::invalid_argument("unknown method '" + std::string(name) + "', expected one of " + known);
+  const std::string given(name);
+  throw UnknownMethod(given, "unknown method '" + given + "', expected one of " + known);
 }
 
 }  // namespace

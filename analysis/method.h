@@ -14,8 +14,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/proofs/step_magnitude.h"
@@ -25,10 +27,17 @@
 
 namespace springstab {
 
+/// Of a name that no built-in method has.
+struct UnknownMethod : std::invalid_argument {
+  UnknownMethod(std::string its_name, const std::string& what)
+      : std::invalid_argument(what), name(std::move(its_name)) {}
+  std::string name;
+};
+
 /// Cheap to copy, and safe to share between threads.
 class Method {
  public:
-  /// The built-in method of that name; throws std::invalid_argument that lists the known names.
+  /// The built-in method of that name; throws UnknownMethod, which lists the known names.
   Method(std::string_view name);
   Method(const std::string& name) : Method(std::string_view(name)) {}
   Method(const char* name) : Method(std::string_view(name)) {}

@@ -1,5 +1,6 @@
 // `springstab limits`: the largest stable step of each method for a structure, and the damping that goes with
 // it.
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -8,6 +9,7 @@
 #include "analysis/structure_limits.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
 #include "solvers/io/input_error.h"
 
@@ -20,6 +22,8 @@ struct Row {
   std::string_view method;
   MethodLimits limits;  // all unknown if k0 is not
 };
+
+bool nothing_limits(const Row& row) { return row.limits.status == LimitStatus::unlimited; }
 
 const char* name(LimitStatus status) {
   switch (status) {
@@ -137,12 +141,14 @@ Json limits_json(std::string_view method, const MethodLimits& limits, double d0)
 
 std::string cell(const std::optional<double>& h) { return h ? text("%.6g", *h) : "-"; }
 
-void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping, double safety) {
+void print(const StructuralMatrices& s, const std::string& size, const StiffestMode& k0,
+           const DampingModel& damping, double safety) {
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
   if (s.condensed > 0)
     std::cout << text(" (after eliminating %ld without mass", static_cast<long>(s.condensed))
               << (s.condensed_rate > 0 ? text(", whose own motion decays at %.6g 1/s)", s.condensed_rate)
                                        : ")");
+  std::cout << (size.empty() ? "" : "\n") << size;
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
   std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
@@ -195,20 +201,36 @@ Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety
   const auto& [matrices, damping, every_pose] = answer.structure();
   Json list = Json::array();
   for (const Row& row : rows) list.push_back(limits_json(row.method, row.limits, damping.d0));
-  return {{"degrees_of_freedom", matrices.size()},
-          {"condensed", matrices.condensed},
-          {"condensed_rate", matrices.condensed_rate > 0 ? number(matrices.condensed_rate) : Json()},
-          {"k0", k0_json(answer.k0())},
-          {"stiffness_indefinite", answer.k0().indefinite},
-          {"symmetric", matrices.symmetric},
-          {"growth_rate", number(answer.growth())},
-          {"damping", damping_json(damping)},
-          {"safety", safety},
-          {"mesh", mesh_json(subject)},
-          {"methods", list}};
+  Json json{{"degrees_of_freedom", matrices.size()},
+            {"condensed", matrices.condensed},
+            {"condensed_rate", matrices.condensed_rate > 0 ? number(matrices.condensed_rate) : Json()},
+            {"k0", k0_json(answer.k0())},
+            {"stiffness_indefinite", answer.k0().indefinite},
+            {"symmetric", matrices.symmetric},
+            {"growth_rate", number(answer.growth())},
+            {"damping", damping_json(damping)},
+            {"safety", safety},
+            {"mesh", mesh_json(subject)},
+            {"methods", list}};
+  add_size(json, subject);
+  return json;
 }
 
-void print(StructureLimits& answer, const std::vector<Row>& rows, double safety) {
+// Of a step that stability limits; one that nothing limits is the user's.
+void print_too_long(StructureLimits& answer, const std::vector<Row>& rows, const Subject& subject) {
+  const auto scales = time_scales(subject, slowest_period(answer.k0()));
+  std::map<std::string, std::string> methods;
+  for (const auto& [method, limits] : rows) {
+    if (limits.status != LimitStatus::limited || !limits.recommended) continue;
+    const std::string what = exceeded(*limits.recommended, scales);
+    if (!what.empty()) methods[what] += (methods[what].empty() ? "" : ", ") + std::string(method);
+  }
+  for (const auto& [what, list] : methods)
+    std::cerr << "springstab: warning: stable, but too long to follow the motion: the step to use exceeds "
+              << what << ": " << list << '\n';
+}
+
+void print(StructureLimits& answer, const std::vector<Row>& rows, double safety, const std::string& size) {
   const auto& [matrices, damping, every_pose] = answer.structure();
   const StiffestMode& k0 = answer.k0();
   if (!k0.converged) {
@@ -216,7 +238,7 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety)
               << '\n';
     return;
   }
-  print(matrices, k0, damping, safety);
+  print(matrices, size, k0, damping, safety);
   for (const Row& row : rows) print(row.method, row.limits);
   if (!matrices.symmetric)
     std::cout << (answer.growth() ? "\nK or D is not symmetric: these limits are estimates, from all "
@@ -243,25 +265,33 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   check(options);
   Subject subject(options.input, true);
   print_mesh_notes(subject);
+  print_size_warning(subject);
   Structure structure = subject.structure(subject.initial_state(common.seed));
   structure.every_pose = subject.every_pose();
   StructureLimits answer(std::move(structure),
                          {.safety = options.safety, .seed = common.seed, .max_step = options.max_step});
 
   std::vector<Row> rows;
+  std::optional<Waiting> waiting(std::in_place, "limits", common.quiet);
+  waiting->now("k0");
   int status = answer.k0().converged ? done : no_answer;
   for (const Method& method : all_methods()) {
     if (!options.method.empty() && method.name() != options.method) continue;
+    waiting->now(method.name());
     const MethodLimits& limits = answer.limits(method);
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
+  waiting.reset();
   if (common.json) {
     print_json(report(answer, rows, options.safety, subject));
   } else {
-    print(answer, rows, options.safety);
+    print(answer, rows, options.safety, size_text(subject));
   }
+  print_too_long(answer, rows, subject);
+  if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))
+    std::cerr << "springstab: note: --max-step has no use here: nothing that was asked for is unlimited\n";
   return status;
 }
 

@@ -6,11 +6,14 @@
 #include "experiments/command/output.h"
 #include "experiments/explain.h"
 #include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/size_report.h"
 #include "experiments/runs/checkpoint.h"
 #include "experiments/runs/identity.h"
 #include "experiments/runs/measured_run.h"
 #include "experiments/runs/recorder.h"
 #include "experiments/runs/step_run.h"
+#include "experiments/simulate_notes.h"
+#include "experiments/simulate_report.h"
 #include "solvers/io/input_error.h"
 #include "solvers/simulation.h"
 
@@ -35,7 +38,9 @@ void check(const SimulateOptions& options) {
                      text("is %g, expected more than 0 and less than 1", options.cg_tolerance));
   if (options.frames < 1 || options.frames > most_frames)
     throw InputError("--frames", 0, text("is %d, expected 1 to %d", options.frames, most_frames));
-  if (options.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
+  if (options.earlier.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
+  if (options.keep_diverged && options.output.empty())
+    throw InputError("--keep-diverged", 0, "needs --output, the folder for the frames");
 }
 
 // All that decides what a run does and writes.
@@ -54,8 +59,9 @@ Json identity(const CommonOptions& common, const SimulateOptions& o) {
                       {"cg-tolerance", o.cg_tolerance},
                       {"format", o.format},
                       {"frames", o.frames},
+                      {"keep-diverged", o.keep_diverged},
                       {"seed", common.seed}},
-                     contents_of(o.input, o.resume));
+                     contents_of(o.input, o.earlier.resume));
 }
 
 std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,
@@ -65,20 +71,6 @@ std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,
   return text(
       "%d frames and the run up to t = %.6g s are saved in %s; the same command goes on there with --resume",
       recorder.written(), checkpoint.saved_until(), options.output.c_str());
-}
-
-const char* outcome(StepStatus status) {
-  switch (status) {
-    case StepStatus::done:
-      return "done";
-    case StepStatus::diverged:
-      return "diverged";
-    case StepStatus::not_positive_definite:
-      return "not positive definite";
-    case StepStatus::not_converged:
-      break;
-  }
-  return "not converged";
 }
 
 // The model as the options want it.
@@ -113,18 +105,6 @@ int say_no_plan(const StepChooser& chooser, bool json) {
   return no_answer;
 }
 
-// What a run came to.
-struct Course {
-  SimulationResult result;
-  State<Vector> start, end;
-  EnergyWatch watch;
-  Counts counts;
-  double cpu_seconds = 0, step = 0;
-  bool stopped = false;
-
-  bool diverged() const { return result.status == StepStatus::diverged; }
-};
-
 // Runs from the start or from where a run was left.
 Course run(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
            StepChooser& chooser, const StepPlan& plan, const State<Vector>& start, CheckpointFile& checkpoint,
@@ -146,12 +126,14 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
       [&](const RunSoFar& so_far, const State<Vector>& s) {
         recorder->record(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
-          checkpoint.save({so_far,
-                           s,
-                           {{"chooser", kept(chooser, subject)},
-                            {"recorder", recorder->kept()},
-                            {"counts", json_of(counted.counts())},
-                            {"cpu_seconds", cpu_seconds() - cpu_before}}});
+          checkpoint.save([&]() -> KeptRun {
+            return {so_far,
+                    s,
+                    {{"chooser", kept(chooser, subject)},
+                     {"recorder", recorder->kept()},
+                     {"counts", json_of(counted.counts())},
+                     {"cpu_seconds", cpu_seconds() - cpu_before}}};
+          });
         if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
         return !interrupt.requested();
       },
@@ -162,113 +144,35 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   return course;
 }
 
-Json json_of(const Course& course, const SimulateOptions& options, Subject& subject,
-             const StepChooser& chooser, int frames) {
-  System& system = subject.system();
-  const auto energy = [&](const State<Vector>& s) {
-    return number(system.kinetic_energy(s.v) + system.potential_energy(s.x));
-  };
-  const bool linearized = Method(options.method).info().linearized;
-  const StepDecisions& decisions = chooser.decisions();
-  Json report{{"method", options.method},
-              {"status", course.stopped ? "interrupted" : outcome(course.result.status)},
-              {"step", course.step},
-              {"steps", course.result.steps},
-              {"diverged", course.diverged()},
-              {"diverged_at", course.diverged() ? number(course.result.failed_at) : Json()},
-              {"grows", course.watch.grows(system.kinetic_energy(course.end.v),
-                                           system.potential_energy(course.end.x))},
-              {"last_step", decisions.h},
-              {"last_relinearize", linearized ? Json(decisions.relinearize) : Json()},
-              {"cpu_seconds", course.cpu_seconds},
-              {"counts",
-               {{"force_evaluations", course.counts.force_evaluations},
-                {"hessian_assemblies", course.counts.hessian_assemblies},
-                {"block_products", course.counts.block_products},
-                {"cg_iterations", course.counts.cg_iterations},
-                {"relinearizations", linearized ? course.counts.hessian_assemblies : 0},
-                {"rollbacks", decisions.rollbacks},
-                {"halved_steps", decisions.halved_steps}}},
-              {"energy", {{"initial", energy(course.start)}, {"final", energy(course.end)}}},
-              {"frames", frames},
-              {"mesh", mesh_json(subject)}};
-  report["damping"] = {{"d0", number(subject.damping().d0)}, {"alpha", number(subject.damping().alpha)}};
-  if (Scene* scene = subject.scene()) {
-    const Eigen::Vector3d last = scene->positions(course.end.x).back();
-    report["last_particle"] = {{"position", {last.x(), last.y(), last.z()}}};
-    report["solver"] = options.direct ? "direct" : "cg";
-    report["cg_tolerance"] = options.direct ? Json() : Json(options.cg_tolerance);
-  }
-  return report;
-}
-
-void print_end(const Course& course, const SimulateOptions& options) {
-  const SimulationResult& result = course.result;
-  std::cout << text("%s, %ld steps of %.6g s in %.3g CPU-seconds: ", options.method.c_str(), result.steps,
-                    course.step, course.cpu_seconds);
-  if (course.stopped) {
-    std::cout << text("interrupted at t = %.6g s\n", result.time);
-  } else if (course.diverged()) {
-    std::cout << text("diverged at t = %.6g s\n", result.failed_at);
-  } else if (result.status != StepStatus::done) {
-    std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
-                      outcome(result.status));
-  } else {
-    std::cout << "done\n";
-  }
-}
-
-void print_decisions(const StepDecisions& decisions, bool linearized) {
-  if (decisions.rollbacks > 0)
-    std::cout << text("divergence was seen and undone %ld times; the last step was %.6g s%s\n",
-                      decisions.rollbacks, decisions.h,
-                      linearized ? text(", linearized every %.6g s", decisions.relinearize).c_str() : "");
-  if (decisions.halved_steps > 0)
-    std::cout << text("%ld steps were halved because 1 + hD' + h²K' was not positive definite\n",
-                      decisions.halved_steps);
-}
-
-void print_report(const Course& course, const SimulateOptions& options, Subject& subject,
-                  const StepChooser& chooser, int frames) {
-  System& system = subject.system();
-  const auto energy = [&](const State<Vector>& s) {
-    return system.kinetic_energy(s.v) + system.potential_energy(s.x);
-  };
-  print_end(course, options);
-  print_decisions(chooser.decisions(), Method(options.method).info().linearized);
-  std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy(course.start),
-                    energy(course.end));
-  if (course.watch.grows(system.kinetic_energy(course.end.v), system.potential_energy(course.end.x)))
-    std::cout << "the structure is unstable: its motion grows by itself\n";
-  if (Scene* scene = subject.scene()) {
-    const Eigen::Vector3d p = scene->positions(course.end.x).back();
-    std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p.x(), p.y(), p.z());
-  }
-  if (frames > 0) std::cout << text("%d frames in %s\n", frames, options.output.c_str());
-}
-
 int run_subject(const CommonOptions& common, const SimulateOptions& options, Subject& subject) {
   prepare(subject, options);
   StepChooser chooser(subject, step_options(common, options));
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) return say_no_plan(chooser, common.json);
   prepare_solver(subject, options);
+  print_unused_options(common, options, !subject.scene());
   const State<Vector> start = subject.initial_state(common.seed);
   const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
   if (options.explain && !common.json) std::cout << explanation_table(explanation);
+  print_step_warning(subject, start, plan->h);
   if (!options.output.empty()) make_folder(options.output);
-  CheckpointFile checkpoint(options.output, identity(common, options), options.resume, common.quiet);
+  CheckpointFile checkpoint(options.output, identity(common, options), options.earlier, common.quiet);
   std::optional<Recorder> recorder;
   const StopOnInterrupt interrupt;
   const Course course = run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder);
-  if (!course.stopped) recorder->kept();  // a full disk shows before the report
+  if (course.diverged()) recorder->record_last();
+  if (!course.stopped) recorder->flush();  // a full disk shows before the report
 
   if (common.json) {
     Json report = json_of(course, options, subject, chooser, recorder->written());
+    if (options.keep_diverged) report["diverged_frames"] = recorder->last_steps();
     if (options.explain) report["explanation"] = explanation;
     print_json(report);
   } else {
     print_report(course, options, subject, chooser, recorder->written());
+    if (recorder->last_steps() > 0)
+      std::cout << text("the last %d of them are single steps, up to the divergence\n",
+                        recorder->last_steps());
   }
   if (course.stopped) {
     std::cerr << "springstab: interrupted; " << saved(*recorder, checkpoint, options) << '\n';
@@ -289,6 +193,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   Method{options.method};
   Subject subject(options.input);
   print_mesh_notes(subject);
+  print_size_warning(subject);
   return naming_duration([&] { return run_subject(common, options, subject); });
 }
 

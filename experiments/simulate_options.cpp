@@ -29,6 +29,11 @@ Subcommand simulate_command() {
           "for "
           "the stiffness\n"
           "it has there; a linearized method then also linearizes twice as often.\n"
+          "JSON: energy.gained is what kinetic, elastic and gravity's energy together have grown [J]; extent "
+          "[m], total_mass [kg]\n"
+          "and springs are those of the scene at rest; with --keep-diverged, diverged_frames of the last "
+          "frames "
+          "are single steps.\n"
           "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
           "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
           "--output drape\n"
@@ -64,7 +69,9 @@ Subcommand simulate_command() {
            Option("--cg-tolerance", &o->cg_tolerance,
                   "relative residual of implicit Euler's conjugate gradients")
                .with_default(),
-           resume_option(o->resume)}),
+           Option("--keep-diverged", &o->keep_diverged,
+                  "of a run that diverges, also record every one of its last 32 steps before that"),
+           resume_option(o->earlier), overwrite_option(o->earlier)}),
       .run = [o](const CommonOptions& common) {
         o->designed_damping = o->damping == "designed";
         o->projected_hessian = o->hessian == "projected";

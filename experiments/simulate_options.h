@@ -25,7 +25,8 @@ struct SimulateOptions {
   int frames = 100;
   double cg_tolerance = 1e-6;
   bool direct = false;  // a factorization instead of conjugate gradients
-  bool resume = false;
+  bool keep_diverged = false;
+  EarlierRun earlier;
 };
 
 /// Runs a scene or a system of matrices; returns an ExitStatus.

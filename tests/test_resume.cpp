@@ -402,15 +402,15 @@ BOOST_AUTO_TEST_CASE(a_journal_computes_what_it_lacks_and_nothing_else) {
   BOOST_TEST(computed == 3);
   const fs::path file = path() / "count.journal";
   {
-    Journal journal(path(), identity, false, true);
+    Journal journal(path(), identity, {}, true);
     counted(journal, computed, 2);
-    BOOST_CHECK_THROW(Journal(path(), identity, true, true), InputError);  // in use
+    BOOST_CHECK_THROW(Journal(path(), identity, {.resume = true}, true), InputError);  // in use
   }
   const std::string two = content_of(file);
   // The third line whole, torn anywhere, or absent.
   computed = 0;
   {
-    Journal journal(path(), identity, true, true);
+    Journal journal(path(), identity, {.resume = true}, true);
     BOOST_TEST((journal.has_next(2) && !journal.has_next(3)));
     BOOST_TEST((counted(journal, computed) == all));
   }
@@ -420,12 +420,12 @@ BOOST_AUTO_TEST_CASE(a_journal_computes_what_it_lacks_and_nothing_else) {
   for (std::size_t length = two.size(); length < three.size(); ++length) {
     write(file, three.substr(0, length));
     computed = 0;
-    Journal journal(path(), identity, true, true);
+    Journal journal(path(), identity, {.resume = true}, true);
     BOOST_TEST((counted(journal, computed) == all));
     BOOST_TEST(computed == 1);
     BOOST_TEST((content_of(file) == three));
   }
-  Journal journal(path(), identity, true, true);
+  Journal journal(path(), identity, {.resume = true}, true);
   BOOST_TEST(journal.has_next(3));
   journal.finish();
   BOOST_TEST(!fs::exists(file));
@@ -451,7 +451,7 @@ BOOST_AUTO_TEST_CASE(a_journal_of_another_run_or_a_damaged_one_is_refused) {
   const fs::path file = path() / "count.journal";
   int computed = 0;
   {
-    Journal journal(path(), identity, false, true);
+    Journal journal(path(), identity, {}, true);
     counted(journal, computed);
     BOOST_CHECK_THROW(journal.piece("not a number",
                                     [] {
@@ -463,7 +463,7 @@ BOOST_AUTO_TEST_CASE(a_journal_of_another_run_or_a_damaged_one_is_refused) {
   BOOST_TEST(whole.find("null,") == std::string::npos);  // NaN would be one
   const auto refused = [&](const Json& who, const std::string& reason) {
     try {
-      const Journal journal(path(), who, true, true);
+      const Journal journal(path(), who, {.resume = true}, true);
     } catch (const InputError& error) {
       const std::string message = error.what();
       BOOST_TEST_CONTEXT(message) {
@@ -485,12 +485,12 @@ BOOST_AUTO_TEST_CASE(a_journal_of_another_run_or_a_damaged_one_is_refused) {
     refused(identity, "is damaged");
   }
   for (const bool resumed : {false, true}) {  // a scene's name in another encoding
-    Journal journal(path(), identity, resumed, true);
+    Journal journal(path(), identity, {resumed, !resumed}, true);
     BOOST_TEST(journal.has_next(1) == resumed);
     BOOST_TEST((journal.piece("caf\xe9, rk4", [] { return Json(1); }) == 1));
   }
   write(file, whole);
-  Journal journal(path(), identity, true, true);
+  Journal journal(path(), identity, {.resume = true}, true);
   BOOST_CHECK_THROW(journal.piece("number 2", [] { return Json(); }), InputError);  // the first one is next
 }
 

@@ -3,6 +3,7 @@
 #include <boost/test/unit_test.hpp>
 #include <filesystem>
 
+#include "experiments/command/words.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
 #include "tests/refusals.h"
@@ -67,14 +68,14 @@ BOOST_AUTO_TEST_CASE(every_field_that_is_written_arrives) {
     "geometry": {"spacing": 0.5, "grid": [7, 9]},
     "damping": {"alpha": 1e-3, "d0": 2},
     "gravity": [1, -2.5, 3e0],
-    "material": {"name": "stiff", "area_density": 0.3, "particle_mass": 1.25e-4, "structural": 11, "shear": 12,
+    "material": {"name": "stiff", "particle_mass": 1.25e-4, "structural": 11, "shear": 12,
                  "bending": 13, "damping": {"structural": 0.01, "shear": 0.02, "bending": 0.03}},
     "pins": [6, 0, 5, 6]
   })");
   const SceneDescription scene = read_scene_file(file.path());
   const Grid& grid = std::get<Grid>(scene.geometry);
   BOOST_TEST((grid.rows == 7 && grid.columns == 9 && grid.spacing == 0.5));
-  BOOST_TEST(springs(scene).area_density == 0.3);
+  BOOST_TEST(springs(read(with(R"("material": {"area_density": 0.3})"))).area_density == 0.3);
   BOOST_TEST(springs(scene).particle_mass.value() == 1.25e-4);
   check_equal(springs(scene).stiffness, {11, 12, 13});
   check_equal(springs(scene).damping, {0.01, 0.02, 0.03});
@@ -147,6 +148,9 @@ BOOST_AUTO_TEST_CASE(a_suggestion_is_near_or_absent) {
   BOOST_TEST(expected_one_of("colour", {"grid", "spacing", "mesh"}) ==
              "expected 'grid', 'spacing' or 'mesh'");
   BOOST_TEST(expected_one_of("x", {"grid"}) == "expected 'grid'");
+  BOOST_TEST(did_you_mean("RK4", {"rk2", "rk4"}) == " (did you mean 'rk4'?)");
+  BOOST_TEST(did_you_mean("Symplectic_Euler", {"explicit-euler", "symplectic-euler"}) ==
+             " (did you mean 'symplectic-euler'?)");
 }
 
 BOOST_AUTO_TEST_CASE(broken_json_is_refused_at_its_line) {
@@ -217,6 +221,10 @@ BOOST_AUTO_TEST_CASE(a_scene_that_breaks_the_schema_is_refused_at_its_line) {
       {with("\"material\": [1]"), 2, "'material' is an array"},
       {with("\"material\": {\n\"name\": \"stif\"}"), 3, "did you mean 'stiff'?"},
       {with("\"material\": {\"name\": 1}"), 2, "'name' is 1"},
+      {with("\"material\": {\n\"particle_mass\": 0.1,\n\"area_density\": 0.2}"), 4,
+       "'particle_mass' stands beside 'area_density', expected one of them"},
+      {with("\"material\": {\"model\": \"baraff-witkin\", \"area_density\": 0.2,\n\"particle_mass\": 1}"), 3,
+       "'particle_mass' stands beside 'area_density', expected one of them"},
       {with("\"material\": {\n\"area_density\": -0.2}"), 3,
        "'area_density' is -0.2, expected a positive number"},
       {with("\"material\": {\n\"particle_mass\": 0}"), 3, "'particle_mass' is 0"},

@@ -2,13 +2,17 @@
 #include "experiments/command/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <new>
 #include <stdexcept>
 
+#include "analysis/method.h"
 #include "experiments/command/interrupt.h"
 #include "experiments/command/subcommand_list.h"
+#include "experiments/command/words.h"
 #include "solvers/io/input_error.h"
+#include "solvers/io/text_file.h"
 
 namespace springstab {
 namespace {
@@ -28,12 +32,53 @@ CLI::Option* add_target(CLI::App& app, const Option& option, T* target) {
   return app.add_option(option.name, *target, option.help);
 }
 
+std::vector<std::string_view> views(const std::vector<std::string>& words) {
+  return {words.begin(), words.end()};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& known) {
+  std::string list;
+  for (const std::string& word : known) list += (list.empty() ? "" : ",") + word;
+  return CLI::Validator(
+      [known](const std::string& word) {
+        if (std::find(known.begin(), known.end(), word) != known.end()) return std::string();
+        return springstab::quoted(word) + " is unknown, " + expected_one_of(word, views(known));
+      },
+      '{' + list + '}');
+}
+
+// Of the first word that nothing was known of, an option or a subcommand: what was probably meant. Empty
+// where there is no such word.
+std::string misspelt(const CLI::App& app) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  if (unknown.empty()) return {};
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::string word = unknown[0].substr(0, unknown[0].find('='));
+  if (!word.starts_with('-')) {
+    if (!chosen.empty()) return {};
+    std::vector<std::string> names;
+    for (const CLI::App* each : app.get_subcommands({})) names.push_back(each->get_name());
+    return "unknown subcommand " + springstab::quoted(word) + ", " + expected_one_of(word, views(names));
+  }
+  std::vector<std::string> names;
+  for (const CLI::App* each : {&app, chosen.empty() ? &app : static_cast<const CLI::App*>(chosen[0])})
+    for (const CLI::Option* option : each->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return "unknown option " + springstab::quoted(word) + did_you_mean(word, views(names));
+}
+
+std::string unknown_method(const UnknownMethod& error) {
+  std::vector<std::string> names;
+  for (const Method& method : all_methods()) names.push_back(method.name());
+  return error.what() + did_you_mean(error.name, views(names));
+}
+
 void add(CLI::App& app, const Option& option) {
   CLI::Option* added =
       std::visit([&](auto* target) { return add_target(app, option, target); }, option.target);
   if (option.required) added->required();
   if (option.value) added->type_name(*option.value);
-  if (!option.known.empty()) added->check(CLI::IsMember(option.known));
+  if (!option.known.empty()) added->check(one_of(option.known));
   if (!option.default_text.empty()) {
     added->default_str(option.default_text);
   } else if (option.default_shown) {
@@ -77,7 +122,11 @@ int run_command(int argc, const char* const* argv) {
     CLI::App* added = app.add_subcommand(subcommand.name, subcommand.title);
     for (const Option& option : subcommand.options) add(*added, option);
     added->footer(subcommand.footer);
-    added->callback([&] { chosen = &subcommand; });
+    added->callback([&, added] {
+      chosen = &subcommand;
+      for (const CLI::Option* option : added->get_options())
+        if (option->count() > 0) common.given.insert(option->get_name());
+    });
   }
 
   exit_on_interrupt("nothing was saved");
@@ -86,9 +135,12 @@ int run_command(int argc, const char* const* argv) {
     return chosen->run(common);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return refuse((std::string(error.what()) + "; see springstab --help").c_str());
+    const std::string unknown = misspelt(app);
+    return refuse(((unknown.empty() ? error.what() : unknown) + "; see springstab --help").c_str());
   } catch (const InputError& error) {
     return refuse(error.what());
+  } catch (const UnknownMethod& error) {
+    return refuse(unknown_method(error).c_str());
   } catch (const std::invalid_argument& error) {
     return refuse(error.what());
   } catch (const std::bad_alloc&) {

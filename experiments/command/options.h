@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
+#include <string>
 
 namespace springstab {
 
@@ -11,6 +13,12 @@ struct CommonOptions {
   bool quiet = false;
   std::uint64_t seed = 1;
   int threads = 1;
+  std::set<std::string> given{};  // names of the subcommand's options that were typed, as "--nx"
+};
+
+/// What is to become of an interrupted run that --output holds. Neither: the user is asked.
+struct EarlierRun {
+  bool resume = false, overwrite = false;
 };
 
 /// The command-line contract.

@@ -17,6 +17,7 @@
 #include <locale>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "solvers/io/input_error.h"
 
@@ -39,6 +40,17 @@ bool is_abandoned(const std::string& name) {
 std::string cannot_be_written() {
   return std::string("cannot be written") +
          (errno ? std::string(": ") + std::strerror(errno) : " (a full disk?)");
+}
+
+// Whether fsync() could be called and succeeded; else errno says why not.
+bool is_synced(const std::string& path, int flags) {
+  const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool synced = fsync(descriptor) == 0;
+  const int reason = errno;
+  close(descriptor);
+  errno = reason;
+  return synced;
 }
 
 }  // namespace
@@ -86,18 +98,23 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
 }
 
 OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
-    : path_(path), target_(path), aside_(path + ".kept"), kept_(bytes > 0) {
+    : path_(path), target_(path), aside_(kept_path(path)), kept_(bytes > 0) {
   if (bytes > 0) {
     std::error_code error;
     const std::uintmax_t there = std::filesystem::file_size(aside_, error);
     if (!error && there >= bytes) std::filesystem::resize_file(aside_, bytes, error);
-    if (error || there < bytes)
-      throw InputError(aside_, 0, "is not what the run had written; without --resume the run starts anew");
+    if (error || there < bytes) throw InputError(aside_, 0, not_what_was_kept);
   }
   stream_.open(aside_, bytes > 0 ? std::ios::app : std::ios::trunc);
   if (!stream_) throw InputError(path, 0, cannot_be_written());
   stream_.imbue(std::locale::classic());
   stream_.precision(17);
+}
+
+std::uintmax_t OutputFile::keep_on_disk() {
+  const std::uintmax_t bytes = keep();
+  sync_file(aside_);
+  return bytes;
 }
 
 std::uintmax_t OutputFile::keep() {
@@ -125,11 +142,32 @@ void OutputFile::commit() {
   committed_ = true;
 }
 
+void OutputFile::commit_to_disk() {
+  stream_.flush();  // what fails here shows in commit()
+  sync_file(aside_);
+  commit();
+  sync_folder(std::filesystem::path(target_).parent_path());
+}
+
+void sync_file(const std::string& path) {
+  if (!is_synced(path, O_RDONLY)) throw InputError(path, 0, cannot_be_written());
+}
+
+void sync_folder(const std::string& path) {
+  if (is_synced(path.empty() ? "." : path, O_RDONLY | O_DIRECTORY)) return;
+  if (errno == EIO || errno == ENOSPC || errno == EDQUOT) throw InputError(path, 0, cannot_be_written());
+}
+
 void make_folder(const std::string& path) {
   std::error_code error;
+  std::vector<std::filesystem::path> parents;  // of what is to be made
+  for (std::filesystem::path at = std::filesystem::absolute(path).lexically_normal();
+       at.has_relative_path() && !std::filesystem::exists(at, error); at = parents.back())
+    parents.push_back(at.parent_path());
   std::filesystem::create_directories(path, error);
   if (error || !std::filesystem::is_directory(path))
     throw InputError(path, 0, "cannot be made a folder" + (error ? ": " + error.message() : std::string()));
+  for (const std::filesystem::path& parent : parents) sync_folder(parent);
   for (const auto& entry : std::filesystem::directory_iterator(path, error))
     if (is_abandoned(entry.path().filename().string())) std::filesystem::remove(entry.path(), error);
 }
@@ -144,6 +182,32 @@ FolderLock::FolderLock(const std::string& folder)
 
 FolderLock::~FolderLock() {
   if (descriptor_ >= 0) close(descriptor_);
+}
+
+Waiting::Waiting(std::string label, bool quiet) : label_(std::move(label)) {
+  if (!quiet && isatty(STDERR_FILENO)) thread_ = std::thread([this] { show(); });
+}
+
+Waiting::~Waiting() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  end_.notify_one();
+  thread_.join();
+}
+
+void Waiting::now(const std::string& what) {
+  const std::lock_guard lock(mutex_);
+  what_ = what;
+}
+
+void Waiting::show() {
+  std::unique_lock lock(mutex_);
+  for (int seconds = 1; !end_.wait_for(lock, std::chrono::seconds(1), [this] { return ended_; }); ++seconds)
+    std::cerr << "\r\033[K" << label_ << ": " << what_ << ", " << seconds << " s" << std::flush;
+  std::cerr << "\r\033[K" << std::flush;
 }
 
 Progress::Progress(std::string label, bool quiet)

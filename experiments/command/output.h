@@ -3,11 +3,14 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <thread>
 
 namespace springstab {
 
@@ -32,19 +35,27 @@ class OutputFile {
  public:
   /// Throws InputError if the file cannot be created.
   explicit OutputFile(const std::string& path);
-  /// Goes on after the first `bytes` of what an interrupted run left in path.kept. Throws InputError also
-  /// where less is there.
+  /// Goes on after the first `bytes` of what an interrupted run left in kept_path(path). Throws InputError
+  /// also where less is there.
   OutputFile(const std::string& path, std::uintmax_t bytes);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
+  static std::string kept_path(const std::string& path) { return path + ".kept"; }
+  static constexpr char not_what_was_kept[] =
+      "is not what the run had written; with --overwrite the run starts anew";
+
   std::ostream& stream() { return stream_; }
   /// Hands everything to the system, to be left there for another run if this one does not commit(). Returns
   /// how many bytes there are, throws InputError if they cannot be written.
   std::uintmax_t keep();
+  /// keep(), and waits until the disk has it.
+  std::uintmax_t keep_on_disk();
   /// Throws InputError if anything could not be written.
   void commit();
+  /// The same, and waits until the disk has the file, and its folder the name.
+  void commit_to_disk();
 
  private:
   std::string path_, target_, aside_;  // as given; what is written in the end; until then
@@ -52,8 +63,13 @@ class OutputFile {
   bool committed_ = false, kept_ = false;
 };
 
-/// Creates the folder and its parents, and removes what killed processes left in it beside its place. Throws
-/// InputError if it cannot be made.
+/// Waits until the disk has what was written to a file. Throws InputError if it does not take it.
+void sync_file(const std::string& path);
+/// The same of the names in a folder, where one may look into the folder and its file system can tell.
+void sync_folder(const std::string& path);
+
+/// Creates the folder and its parents, on disk too, and removes what killed processes left in it beside its
+/// place. Throws InputError if it cannot be made.
 void make_folder(const std::string& path);
 
 /// Keeps other processes from writing into the folder, until it is destroyed or the process ends. Throws
@@ -67,6 +83,26 @@ class FolderLock {
 
  private:
   int descriptor_;
+};
+
+/// For what cannot tell how far it is: on stderr what is done "now", and for how many seconds, once that
+/// takes more than one, if stderr is a terminal and not `quiet`.
+class Waiting {
+ public:
+  Waiting(std::string label, bool quiet);
+  ~Waiting();  // erases the line
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+  void now(const std::string& what);
+
+ private:
+  void show();
+
+  std::string label_, what_;
+  bool ended_ = false;
+  std::mutex mutex_;
+  std::condition_variable end_;
+  std::thread thread_;  // last: it uses the others
 };
 
 /// A bar on stderr for what takes more than a second, if stderr is a terminal and not `quiet`.

@@ -22,6 +22,11 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
           .shown_as("NxM"),
       Option("--spacing", &input.spacing, "distance s of the grid's particles (default 0.025)")
           .shown_as("[m]"),
+      Option("--diagonals", &input.diagonals, "of a grid of triangles: uniform (default) or alternating")
+          .shown_as("WORD")
+          .one_of({"uniform", "alternating"}),
+      Option("--scale", &input.scale, "of a mesh's or grid's lengths: 0.001 makes millimetres metres")
+          .shown_as("S"),
       Option("--material", &input.material, "default, soft, stiff (springs), and for surfaces baraff-witkin")
           .shown_as("NAME"),
       Option("--pin", &input.pin, "none, first-row, corners or particle numbers like 0,5-9").shown_as("SPEC"),
@@ -36,9 +41,13 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
   return all;
 }
 
-Option resume_option(bool& resume) {
-  return Option("--resume", &resume,
+Option resume_option(EarlierRun& earlier) {
+  return Option("--resume", &earlier.resume,
                 "go on where the same command was interrupted; what it had finished is in --output");
+}
+
+Option overwrite_option(EarlierRun& earlier) {
+  return Option("--overwrite", &earlier.overwrite, "start anew where --output holds an interrupted run");
 }
 
 std::string plots_folder() {

@@ -16,7 +16,8 @@ std::string method_names();
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);
 
 /// For the commands that keep what they have finished.
-Option resume_option(bool& resume);
+Option resume_option(EarlierRun& earlier);
+Option overwrite_option(EarlierRun& earlier);
 
 /// Where the gnuplot scripts are: installed, as seen from the running command, else `plots` beside it, as in
 /// a build folder. Not checked.

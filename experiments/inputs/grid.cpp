@@ -2,7 +2,9 @@
 
 #include <charconv>
 
+#include "experiments/command/words.h"
 #include "solvers/io/input_error.h"
+#include "solvers/io/text_file.h"
 
 namespace springstab {
 
@@ -16,6 +18,14 @@ Grid parse_grid(const std::string& text, const std::string& source) {
     throw InputError(source, 0, "'" + text + "' is not a size, expected ROWSxCOLUMNS like 32x32");
   check(grid, source);
   return grid;
+}
+
+Diagonals parse_diagonals(const std::string& word, const std::string& source, long line) {
+  if (word == "uniform") return Diagonals::uniform;
+  if (word == "alternating") return Diagonals::alternating;
+  throw InputError(source, line,
+                   "unknown diagonals " + springstab::quoted(word) + ", " +
+                       expected_one_of(word, {"uniform", "alternating"}));
 }
 
 Faces grid_faces(const Grid& grid) {

@@ -11,6 +11,9 @@ namespace springstab {
 /// "NxM" as a grid. Throws InputError(source, ...).
 Grid parse_grid(const std::string& text, const std::string& source);
 
+/// "uniform" or "alternating". Throws InputError(source, line, ...).
+Diagonals parse_diagonals(const std::string& word, const std::string& source, long line = 0);
+
 /// Its cells.
 Faces grid_faces(const Grid& grid);
 

@@ -69,6 +69,8 @@ Json texture_json(const MeshFile& file) {
 
 void print_mesh_notes(const Subject& subject) {
   print_unused_texture_unit(subject);
+  if (subject.has_unused_diagonals())
+    say("note", "diagonals", "have no use here: springs lie on both diagonals of a cell");
   if (!subject.mesh_file()) return;
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <utility>
 
+#include "experiments/command/words.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/text_file.h"

@@ -56,6 +56,7 @@ struct SceneDescription {
   Eigen::Vector3d gravity{0, -9.81, 0};  // [m/s²]
   RayleighDescription damping;
   InitialDescription initial;
+  double scale = 1;  // of the geometry: what its numbers are [m]
 };
 
 /// The same particles by ascending ranges that are apart from each other.
@@ -70,10 +71,6 @@ bool is_solid(const Geometry& geometry);
 /// The materials known by name, of a solid or of a surface. Throws InputError(source, line, ...) naming the
 /// nearest known one.
 Material named_material(const std::string& name, bool solid, const std::string& source, long line);
-
-/// The half of a message about an unknown word that says what was expected:
-/// "expected 'soft' or 'stiff' (did you mean 'soft'?)", the nearest word only if it is near.
-std::string expected_one_of(const std::string& word, const std::vector<std::string_view>& known);
 
 /// Parses a scene (JSON; the schema stands in the README). Paths in it are relative to the file `source`;
 /// only .msh and .vtk are opened, to see whether they hold a solid. Throws InputError with the line for

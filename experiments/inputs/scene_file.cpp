@@ -3,6 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "experiments/command/words.h"
+#include "experiments/inputs/grid.h"
 #include "experiments/inputs/json_with_lines.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
@@ -16,13 +18,21 @@ class SceneReader {
   explicit SceneReader(const std::string& source) : source_(source) {}
 
   SceneDescription scene(const JsonValue& json) const {
-    expect_members(json, {"geometry", "material", "pins", "gravity", "damping", "initial"});
-    SceneDescription scene;
+    expect_members(json,
+                   {"geometry", "material", "pins", "gravity", "damping", "initial", "scale", "diagonals"});
     const JsonValue* geometry_json = find(json, "geometry");
     if (!geometry_json)
       fail(json.line,
            "'geometry' is missing, expected {\"grid\": [rows, columns]} or {\"mesh\": \"cloth.obj\"}");
-    scene.geometry = geometry(*geometry_json);
+    SceneDescription scene{
+        .geometry = geometry(*geometry_json), .material = {}, .pins = {}, .damping = {}, .initial = {}};
+    if (const JsonValue* value = beside_or_in(json, *geometry_json, "scale"))
+      scene.scale = number(*value, Sign::positive);
+    if (const JsonValue* value = beside_or_in(json, *geometry_json, "diagonals")) {
+      Grid* const grid = std::get_if<Grid>(&scene.geometry);
+      if (!grid) fail(value->key_line, "'diagonals' stands with 'mesh', expected it with 'grid' only");
+      grid->diagonals = parse_diagonals(text(*value, "'uniform' or 'alternating'"), source_, value->line);
+    }
     const JsonValue* material_json = find(json, "material");
     const bool solid = is_solid(scene.geometry);
     scene.material = material_json ? material(*material_json, solid)
@@ -69,6 +79,16 @@ class SceneReader {
     return member == object.items.end() ? nullptr : &*member;
   }
 
+  /// A key that may stand in the geometry or beside it; null where it does neither.
+  const JsonValue* beside_or_in(const JsonValue& scene, const JsonValue& geometry,
+                                std::string_view key) const {
+    const JsonValue *beside = find(scene, key), *in = find(geometry, key);
+    if (beside && in)
+      fail(std::max(beside->key_line, in->key_line),
+           beside->name + " stands in 'geometry' and beside it, expected it once");
+    return beside ? beside : in;
+  }
+
   double number(const JsonValue& json, Sign sign) const {
     const bool good =
         json.kind == JsonValue::Kind::number &&
@@ -107,7 +127,7 @@ class SceneReader {
   }
 
   Geometry geometry(const JsonValue& json) const {
-    expect_members(json, {"grid", "spacing", "mesh"});
+    expect_members(json, {"grid", "spacing", "mesh", "scale", "diagonals"});
     const JsonValue *grid_json = find(json, "grid"), *mesh = find(json, "mesh"),
                     *spacing = find(json, "spacing");
     if (!grid_json == !mesh)
@@ -159,17 +179,22 @@ class SceneReader {
     return std::visit([&](auto material) -> Material { return read_material(json, material); }, start);
   }
 
-  template <class M>
-  void read_weight(const JsonValue& json, M& material) const {
-    read_number(json, "area_density", Sign::positive, material.area_density);
-    if (const JsonValue* mass = find(json, "particle_mass"))
-      material.particle_mass = number(*mass, Sign::positive);
+  /// A mass per particle, or a density by its name.
+  void read_weight(const JsonValue& json, std::string_view name, double& density,
+                   std::optional<double>& particle_mass) const {
+    read_number(json, name, Sign::positive, density);
+    const JsonValue* mass = find(json, "particle_mass");
+    if (!mass) return;
+    if (const JsonValue* other = find(json, name))
+      fail(std::max(mass->key_line, other->key_line),
+           "'particle_mass' stands beside " + other->name + ", expected one of them: each says the masses");
+    particle_mass = number(*mass, Sign::positive);
   }
 
   SpringMaterial read_material(const JsonValue& json, SpringMaterial material) const {
     expect_members(json, {"model", "name", "area_density", "particle_mass", "structural", "shear", "bending",
                           "damping"});
-    read_weight(json, material);
+    read_weight(json, "area_density", material.area_density, material.particle_mass);
     read_per_kind(json, material.stiffness);
     if (const JsonValue* damping = find(json, "damping")) {
       expect_members(*damping, {"structural", "shear", "bending"});
@@ -203,7 +228,7 @@ class SceneReader {
   ClothMaterial read_material(const JsonValue& json, ClothMaterial material) const {
     expect_members(json, {"model", "name", "area_density", "particle_mass", "stretch", "shear", "bending",
                           "damping", "area_scaling", "rest_stretch", "texture_unit"});
-    read_weight(json, material);
+    read_weight(json, "area_density", material.area_density, material.particle_mass);
     read_per_condition(json, material.stiffness);
     if (const JsonValue* scaling = find(json, "area_scaling")) {
       const std::string name = text(*scaling, "'continuum' or 'original'");
@@ -228,9 +253,7 @@ class SceneReader {
 
   SolidMaterial read_material(const JsonValue& json, SolidMaterial material) const {
     expect_members(json, {"model", "name", "density", "particle_mass", "edge", "altitude", "damping"});
-    read_number(json, "density", Sign::positive, material.density);
-    if (const JsonValue* mass = find(json, "particle_mass"))
-      material.particle_mass = number(*mass, Sign::positive);
+    read_weight(json, "density", material.density, material.particle_mass);
     read_per_kind(json, material.stiffness);
     if (const JsonValue* damping = find(json, "damping")) {
       expect_members(*damping, {"edge", "altitude"});

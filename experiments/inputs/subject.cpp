@@ -1,6 +1,8 @@
 #include "experiments/inputs/subject.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 
 #include "experiments/inputs/grid.h"
@@ -10,6 +12,7 @@
 #include "solvers/io/mesh_file.h"
 #include "solvers/io/text_file.h"
 #include "solvers/scene/every_pose.h"
+#include "solvers/scene/quantities.h"
 
 namespace springstab {
 namespace {
@@ -21,18 +24,30 @@ bool ends_with(const std::string& text, const std::string& ending) {
 }
 
 SceneDescription describe(const InputOptions& options) {
+  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale)))
+    throw InputError("--scale", 0,
+                     "is " + springstab::shown(*options.scale) + ", expected a positive number");
   if (is_scene_file(options.file)) {
-    if (options.spacing || !options.material.empty() || !options.pin.empty())
-      throw InputError(options.file, 0, "--spacing, --material and --pin stand in the scene file itself");
-    return read_scene_file(options.file);
+    if (options.spacing || !options.material.empty() || !options.pin.empty() || !options.diagonals.empty())
+      throw InputError(options.file, 0,
+                       "--spacing, --diagonals, --material and --pin stand in the scene file itself");
+    SceneDescription description = read_scene_file(options.file);
+    if (options.scale && description.scale != 1)
+      throw InputError(options.file, 0,
+                       "--scale stands beside the scene's own 'scale', expected one of them");
+    description.scale *= options.scale.value_or(1);
+    return description;
   }
   SceneDescription description;
+  description.scale = options.scale.value_or(1);
   if (options.grid.empty()) {
     if (options.spacing) throw InputError("--spacing", 0, "is for --grid only");
+    if (!options.diagonals.empty()) throw InputError("--diagonals", 0, "is for --grid only");
     description.geometry = options.file;
   } else {
     Grid grid = parse_grid(options.grid, "--grid");
     if (options.spacing) grid.spacing = *options.spacing;
+    if (!options.diagonals.empty()) grid.diagonals = parse_diagonals(options.diagonals, "--diagonals");
     check(grid, "--grid");
     description.geometry = grid;
   }
@@ -81,6 +96,44 @@ RayleighDamping parse_rayleigh(const std::string& words) {
   return damping;
 }
 
+// Edges of a net or a solid are springs, those of triangles are sides.
+SceneSize size_of(const std::vector<Spring>& edges, long more_springs) {
+  SceneSize size{{}, 0, static_cast<long>(edges.size()) + more_springs, 0, 0};
+  for (const Spring& s : edges)
+    size.shortest_edge = std::min(size.shortest_edge.value_or(s.rest_length), s.rest_length);
+  return size;
+}
+
+SceneSize elements_of(const SpringNet& net) { return size_of(net.springs, 0); }
+SceneSize elements_of(const TetSolid& solid) {
+  return size_of(solid.edges, static_cast<long>(solid.altitudes.size()));
+}
+SceneSize elements_of(const TriangleCloth& cloth) {
+  SceneSize size{{}, 0, 0, static_cast<long>(cloth.triangles.size()), static_cast<long>(cloth.hinges.size())};
+  const auto side = [&](int i, int j) {
+    const double length = (cloth.rest[i] - cloth.rest[j]).norm();
+    size.shortest_edge = std::min(size.shortest_edge.value_or(length), length);
+  };
+  for (const auto& [p, uv] : cloth.triangles)
+    for (int c = 0; c < 3; ++c) side(p[c], p[(c + 1) % 3]);
+  for (const Hinge& hinge : cloth.hinges) side(hinge.particles[0], hinge.particles[1]);
+  return size;
+}
+
+template <class Cloth>
+SceneSize size_of(const Cloth& cloth) {
+  SceneSize size = elements_of(cloth);
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& place : cloth.rest) box.extend(place);
+  size.extent = box.sizes();
+  size.mass = std::accumulate(cloth.mass.begin(), cloth.mass.end(), 0.0);
+  return size;
+}
+
+void scale_by(double scale, std::vector<Eigen::Vector3d>& vertices) {
+  for (Eigen::Vector3d& vertex : vertices) vertex *= scale;
+}
+
 // At rest but for `stretch` and `velocity`.
 State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
   State<Vector> state = scene.rest_state();
@@ -113,8 +166,10 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
 }
 
 void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
-  if (options.spacing || !options.material.empty() || !options.pin.empty())
-    throw InputError(options.stiffness, 0, "--spacing, --material and --pin are for grids and meshes");
+  if (options.spacing || !options.material.empty() || !options.pin.empty() || options.scale ||
+      !options.diagonals.empty())
+    throw InputError(options.stiffness, 0,
+                     "--spacing, --diagonals, --scale, --material and --pin are for grids and meshes");
   const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
   const auto read = [&](const std::string& path) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
@@ -134,11 +189,15 @@ Subject::Subject(const SceneDescription& description) { build_scene(description)
 
 void Subject::build_scene(const SceneDescription& description) {
   material_ = description.material;
-  if (const Grid* grid = std::get_if<Grid>(&description.geometry)) {
-    faces_ = grid_faces(*grid);
+  if (std::holds_alternative<Grid>(description.geometry)) {
+    Grid grid = std::get<Grid>(description.geometry);
+    grid.spacing *= description.scale;
+    faces_ = grid_faces(grid);
+    unused_diagonals_ = grid.diagonals == Diagonals::alternating &&
+                        !std::holds_alternative<ClothMaterial>(description.material);
     return visit_cloth(description.material, "--grid", [&](const auto& material) {
-      const auto cloth = make(*grid, material);
-      place(cloth, description, pinned_particles(description.pins, *grid), "--grid");
+      const auto cloth = make(grid, material);
+      place(cloth, description, pinned_particles(description.pins, grid), "--grid");
     });
   }
   const std::string& path = std::get<std::string>(description.geometry);
@@ -148,12 +207,14 @@ void Subject::build_scene(const SceneDescription& description) {
   AnyMesh mesh = read_mesh(path);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) {
     const SolidMaterial* material = std::get_if<SolidMaterial>(&description.material);
+    scale_by(description.scale, tets->vertices);
     if (!material) throw InputError(path, 0, "has tetrahedra, expected a material of the model 'tetrahedra'");
     SolidInput input = solid_input(std::move(*tets));
     mesh_file_ = std::move(input.file);
     faces_ = std::move(input.faces);
     return place_mesh(make_solid(input.mesh, *material));
   }
+  scale_by(description.scale, std::get<Mesh>(mesh).vertices);
   SurfaceInput input = surface_input(std::move(std::get<Mesh>(mesh)));
   mesh_file_ = std::move(input.file);
   faces_ = std::move(input.faces);
@@ -166,6 +227,7 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, std
                     const std::string& source) {
   pinned_ = std::move(pinned);
   stretch_ = description.initial.stretch;
+  size_ = size_of(cloth);
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
   if constexpr (std::is_same_v<Cloth, TriangleCloth>)
     if (mesh_file_) {

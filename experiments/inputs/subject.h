@@ -18,9 +18,19 @@ struct InputOptions {
   std::string grid;               // "NxM"
   std::optional<double> spacing;  // [m], with grid
   std::string material, pin;      // with grid or a mesh
+  std::optional<double> scale;    // of a scene's geometry
+  std::string diagonals;          // with grid
   std::string stiffness, mass, damping_matrix;
   bool sum_duplicates = false;  // of these matrices' entries
   std::string rayleigh;         // "d0,alpha": damping of matrices beside D
+};
+
+/// How large a scene is.
+struct SceneSize {
+  Eigen::Vector3d extent;                 // of the box around all particles at rest [m]
+  double mass;                            // pinned particles' too [kg]
+  long springs, triangles, hinges;        // that were made
+  std::optional<double> shortest_edge{};  // [m]
 };
 
 /// A model, and where it came from.
@@ -45,6 +55,12 @@ class Subject : public Model {
   /// What a scene is made of; nothing for matrices.
   const std::optional<Material>& material() const { return material_; }
 
+  /// Of a scene; nothing for matrices.
+  const std::optional<SceneSize>& scene_size() const { return size_; }
+
+  /// Whether a grid's diagonals alternate and nothing is made of triangles.
+  bool has_unused_diagonals() const { return unused_diagonals_; }
+
   /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
   std::optional<StructuralMatrices> every_pose() const;
 
@@ -59,6 +75,8 @@ class Subject : public Model {
   std::optional<MeshFile> mesh_file_;
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
+  std::optional<SceneSize> size_;
+  bool unused_diagonals_ = false;
   std::optional<Material> material_;
   Eigen::Vector3d stretch_{1, 1, 1};
 };

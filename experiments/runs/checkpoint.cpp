@@ -51,13 +51,16 @@ std::vector<AnyVector*> vectors_of(AnyState& state) {
 
 }  // namespace
 
-CheckpointFile::CheckpointFile(const std::string& folder, const Json& identity, bool resume, bool quiet)
+CheckpointFile::CheckpointFile(const std::string& folder, const Json& identity, const EarlierRun& earlier,
+                               bool quiet)
     : identity_(identity), due_(Clock::now() + least_interval) {
   if (folder.empty()) return;
   lock_.emplace(folder);
   path_ = folder + "/simulate.checkpoint";
-  if (!resume) {
+  expect_decided(path_, earlier);
+  if (!earlier.resume) {
     finish();
+    sync_folder(folder);  // lest it comes back beside the frames of this run
   } else if (!quiet && !std::filesystem::exists(path_)) {
     std::cerr << "springstab: nothing was kept in " << path_ << ", starting anew\n";
   }
@@ -67,7 +70,7 @@ std::optional<KeptRun> CheckpointFile::read() {
   if (path_.empty() || !std::filesystem::exists(path_)) return std::nullopt;
   const std::string all = bytes_of(path_);
   const InputError damaged(path_, 0,
-                           "is damaged, expected a whole checkpoint; without --resume the run starts anew");
+                           "is damaged, expected a whole checkpoint; with --overwrite the run starts anew");
   if (all.size() < hash_digits) throw damaged;
   const std::string_view content = std::string_view(all).substr(0, all.size() - hash_digits);
   const std::size_t end = content.find('\n');
@@ -89,9 +92,10 @@ std::optional<KeptRun> CheckpointFile::read() {
   return kept;
 }
 
-void CheckpointFile::save(const KeptRun& kept) {
+void CheckpointFile::save(const std::function<KeptRun()>& make) {
   if (path_.empty()) return;
   const Clock::time_point before = Clock::now();
+  const KeptRun kept = make();
   const std::vector<const Vector*> vectors = vectors_of(kept.state);
   if (!std::all_of(vectors.begin(), vectors.end(), [](const Vector* u) { return u->allFinite(); }) ||
       !all_finite(kept.others))
@@ -107,7 +111,7 @@ void CheckpointFile::save(const KeptRun& kept) {
                    sizeof(double) * static_cast<std::size_t>(u->size()));
   OutputFile file(path_);
   file.stream() << content << hash_of(content);
-  file.commit();
+  file.commit_to_disk();
   saved_until_ = kept.run.time;
   const Clock::time_point after = Clock::now();
   due_ = after + std::max<Clock::duration>(least_interval, saving_share * (after - before));

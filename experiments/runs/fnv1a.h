@@ -19,6 +19,7 @@ class Fnv1a {
   }
   void add(double value) { add(&value, sizeof value); }
   void add(const Vector& u) { add(u.data(), sizeof(double) * static_cast<std::size_t>(u.size())); }
+  void add(std::string_view bytes) { add(bytes.data(), bytes.size()); }
   std::string hex() const { return text("%016llx", static_cast<unsigned long long>(hash_)); }  // 16 digits
 
  private:
@@ -27,7 +28,7 @@ class Fnv1a {
 
 inline std::string hash_of(std::string_view bytes) {
   Fnv1a hash;
-  hash.add(bytes.data(), bytes.size());
+  hash.add(bytes);
   return hash.hex();
 }
 

@@ -42,7 +42,7 @@ std::string frame_path(const std::string& folder, const std::string& format, int
 void expect_frame(const std::string& folder, const std::string& format, int frame) {
   const std::string path = frame_path(folder, format, frame);
   if (!std::filesystem::exists(path))
-    throw InputError(path, 0, "is missing, expected all frames of the run; without --resume it starts anew");
+    throw InputError(path, 0, "is missing, expected all frames of the run; with --overwrite it starts anew");
 }
 
 void write_frame(const std::string& folder, const std::string& format, int frame,

@@ -52,9 +52,22 @@ Json contents_of(const InputOptions& input, bool resume) {
                                                               {"mass", input.mass},
                                                               {"damping-matrix", input.damping_matrix}};
   for (const auto& [name, file] : files) contents[name] = file.empty() ? Json() : contents_of(file, resume);
+  if (!input.diagonals.empty()) contents["diagonals"] = input.diagonals;
+  if (input.scale) contents["scale"] = number(input.scale);
   if (!input.rayleigh.empty()) contents["rayleigh"] = input.rayleigh;
   if (input.sum_duplicates) contents["sum-duplicates"] = true;
   return contents;
+}
+
+void expect_decided(const std::string& path, const EarlierRun& earlier) {
+  if (earlier.resume && earlier.overwrite)
+    throw InputError("--resume", 0, "stands beside --overwrite, expected one of them");
+  std::error_code none;
+  const bool asks = !earlier.resume && !earlier.overwrite;
+  if (asks && std::filesystem::exists(path, none) && !std::filesystem::is_empty(path, none))
+    throw InputError(path, 0,
+                     "holds an interrupted run, expected --resume to go on with it or --overwrite to start "
+                     "anew");
 }
 
 void expect_same_run(const Json& kept, const Json& now, const std::string& path, long line) {
@@ -63,7 +76,7 @@ void expect_same_run(const Json& kept, const Json& now, const std::string& path,
   throw InputError(path, line,
                    "was kept by another run, expected the same " +
                        difference[0]["path"].get<std::string>().substr(1) +
-                       "; without --resume the run starts anew");
+                       "; with --overwrite the run starts anew");
 }
 
 }  // namespace springstab

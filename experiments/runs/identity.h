@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/command/options.h"
 #include "experiments/command/output.h"
 #include "experiments/inputs/subject.h"
 
@@ -28,6 +29,10 @@ Json contents_of(const std::string& file, bool resume);
 
 /// What is wrong with --resume alone.
 inline constexpr char needs_output[] = "needs --output, the folder where a run keeps what it has finished";
+
+/// Throws InputError where `path`, in which a run keeps what it has finished, is there already and nobody
+/// says what is to become of it, and for --resume beside --overwrite.
+void expect_decided(const std::string& path, const EarlierRun& earlier);
 
 /// Throws InputError(path, line, ...) that names the first difference unless both are the same.
 void expect_same_run(const Json& kept, const Json& now, const std::string& path, long line);

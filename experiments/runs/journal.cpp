@@ -27,7 +27,7 @@ Json parsed(std::string_view line, const std::string& path, long number) {
     if (hash_of(content) == line.substr(0, digits)) return Json::parse(content);
   }
   throw InputError(path, number,
-                   "is damaged, expected a finished piece; without --resume the run starts anew");
+                   "is damaged, expected a finished piece; with --overwrite the run starts anew");
 }
 
 }  // namespace
@@ -37,21 +37,24 @@ Journal& Journal::none() {
   return instance;
 }
 
-Journal::Journal(const std::string& folder, const Json& identity, bool resume, bool quiet) {
+Journal::Journal(const std::string& folder, const Json& identity, const EarlierRun& earlier, bool quiet) {
   if (folder.empty()) {
-    if (resume) throw InputError("--resume", 0, needs_output);
+    if (earlier.resume) throw InputError("--resume", 0, needs_output);
     exit_on_interrupt("nothing was saved (with --output it would have been)");
     return;
   }
   lock_.emplace(folder);
   path_ = folder + '/' + identity.at("command").get<std::string>() + ".journal";
+  expect_decided(path_, earlier);
   file_.descriptor = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_.descriptor < 0) throw failure(path_);
-  if (resume) read(identity);
+  if (earlier.resume) read(identity);
   if (kept_.empty()) {
     if (ftruncate(file_.descriptor, 0) != 0) throw failure(path_);
     append(identity);
-    if (resume && !quiet) std::cerr << "springstab: nothing was kept in " << path_ << ", starting anew\n";
+    sync_folder(folder);
+    if (earlier.resume && !quiet)
+      std::cerr << "springstab: nothing was kept in " << path_ << ", starting anew\n";
   } else {
     kept_.erase(kept_.begin());
     if (!quiet)
@@ -95,7 +98,7 @@ Json Journal::piece(const std::string& description, const std::function<Json()>&
     if (piece.at("piece") == what) return piece.at("result");
     throw InputError(path_, static_cast<long>(next_) + 1,
                      "is '" + piece.at("piece").get<std::string>() + "', expected '" + what +
-                         "'; without --resume the run starts anew");
+                         "'; with --overwrite the run starts anew");
   }
   Json result = compute();
   if (file_.descriptor < 0) return result;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/command/options.h"
 #include "experiments/command/output.h"
 
 namespace springstab {
@@ -20,11 +21,11 @@ class Journal {
   Journal() = default;
   static Journal& none();
 
-  /// In FOLDER/COMMAND.journal (nowhere if the folder is empty): begins anew, or with `resume` goes on with
-  /// what is there, and tells Ctrl-C and, unless `quiet`, the user what that is. Throws InputError for a
-  /// journal of another run or a damaged one, if the file cannot be written or another process uses the
-  /// folder, and for `resume` without a folder.
-  Journal(const std::string& folder, const Json& identity, bool resume, bool quiet);
+  /// In FOLDER/COMMAND.journal (nowhere if the folder is empty): begins anew, or to resume goes on with what
+  /// is there, and tells Ctrl-C and, unless `quiet`, the user what that is. Throws InputError for a journal
+  /// that is there undecided (expect_decided), of another run or damaged, if the file cannot be written or
+  /// another process uses the folder, and for --resume without a folder.
+  Journal(const std::string& folder, const Json& identity, const EarlierRun& earlier, bool quiet);
 
   /// The next piece. Throws InputError if the journal has one there that is described otherwise, or if it
   /// cannot be written, std::logic_error for a number that is not finite.

@@ -2,10 +2,32 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "experiments/runs/frames.h"
+#include "solvers/io/input_error.h"
 
 namespace springstab {
+namespace {
+
+constexpr std::size_t most_last = 32;  // steps
+
+Vector vector_of(const Json& json) {
+  const auto numbers = json.get<std::vector<double>>();
+  return Vector::Map(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+// Of a file that cannot be read, the hash of what could.
+Fnv1a hash_of_file(const std::string& path) {
+  Fnv1a hash;
+  std::ifstream in(path, std::ios::binary);
+  std::vector<char> block(1 << 20);
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())), in.gcount() > 0)
+    hash.add(block.data(), static_cast<std::size_t>(in.gcount()));
+  return hash;
+}
+
+}  // namespace
 
 Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json& kept)
     : subject_(subject), options_(options) {
@@ -15,41 +37,93 @@ Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json&
     most_ = kept.at("most");
     for (int frame = 0; subject.scene() && frame < written(); ++frame)
       expect_frame(options.output, options.format, frame);
+    on_disk_ = written();
+    for (const Json& moment : kept.value("last", Json::array()))
+      last_.push_back({moment[0], {vector_of(moment[1]), vector_of(moment[2])}});
   }
   if (options.output.empty() || subject.scene()) return;
-  csv_.emplace(options.output + "/trajectory.csv",
-               kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>());
-  if (!kept.is_null()) return;
-  csv_->stream() << "t,kinetic_energy,potential_energy";
-  for (Eigen::Index i = 0; i < subject.system().size(); ++i) csv_->stream() << ",x" << i + 1;
-  csv_->stream() << '\n';
+  const std::string path = options.output + "/trajectory.csv";
+  csv_.emplace(path, kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>());
+  if (!kept.is_null()) {
+    csv_hash_ = hash_of_file(OutputFile::kept_path(path));
+    if (csv_hash_.hex() != kept.at("csv_hash"))
+      throw InputError(OutputFile::kept_path(path), 0, OutputFile::not_what_was_kept);
+    return;
+  }
+  std::string names = "t,kinetic_energy,potential_energy";
+  for (Eigen::Index i = 0; i < subject.system().size(); ++i) names += ",x" + std::to_string(i + 1);
+  write_row(names);
+}
+
+void Recorder::write_row(const std::string& row) {
+  csv_->stream() << row << '\n';
+  csv_hash_.add(row);
+  csv_hash_.add("\n");
 }
 
 void Recorder::record(double t, const State<Vector>& state) {
   if (options_.output.empty()) return;
+  if (keeps_last()) remember(t, state);
   while (!frames_.empty() && t < frames_.back().t) {  // a divergence was undone
     due_ = frames_.back().due;
     frames_.pop_back();
+    on_disk_ = std::min(on_disk_, written());
   }
   if (t < next_time()) return;
+  write(t, state);
+  while (next_time() <= t && due_ <= options_.frames) ++due_;
+}
+
+void Recorder::remember(double t, const State<Vector>& state) {
+  while (!last_.empty() && t <= last_.back().t) last_.pop_back();  // a divergence was undone
+  Moment moment;
+  if (last_.size() == most_last) {  // into the memory it has
+    moment = std::move(last_.front());
+    last_.pop_front();
+  }
+  moment.t = t;
+  moment.state.x = state.x;
+  moment.state.v = state.v;
+  last_.push_back(std::move(moment));
+}
+
+void Recorder::record_last() {
+  for (const Moment& moment : last_) {
+    if (!frames_.empty() && moment.t <= frames_.back().t) continue;
+    write(moment.t, moment.state);
+    ++last_steps_;
+  }
+}
+
+void Recorder::write(double t, const State<Vector>& state) {
   if (subject_.scene()) {
     write_frame(options_.output, options_.format, written(), subject_.vertices(state.x), subject_.faces());
   } else {
-    csv_->stream() << t << ',' << subject_.system().kinetic_energy(state.v) << ','
-                   << subject_.system().potential_energy(state.x);
-    for (double x : state.x) csv_->stream() << ',' << x;
-    csv_->stream() << '\n';
+    std::string row = text("%.17g,%.17g,%.17g", t, subject_.system().kinetic_energy(state.v),
+                           subject_.system().potential_energy(state.x));
+    for (double x : state.x) row += text(",%.17g", x);
+    write_row(row);
   }
   frames_.push_back({t, due_});
   most_ = std::max(most_, written());
-  while (next_time() <= t && due_ <= options_.frames) ++due_;
+}
+
+void Recorder::flush() {
+  if (csv_) csv_->keep();
 }
 
 Json Recorder::kept() {
   Json frames = Json::array();
   for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due});
-  return {
-      {"frames", frames}, {"due", due_}, {"most", most_}, {"csv_bytes", csv_ ? Json(csv_->keep()) : Json()}};
+  Json kept{{"frames", frames}, {"due", due_}, {"most", most_}};
+  if (csv_) kept.update({{"csv_bytes", csv_->keep_on_disk()}, {"csv_hash", csv_hash_.hex()}});
+  for (; subject_.scene() && on_disk_ < written(); ++on_disk_)
+    sync_file(frame_path(options_.output, options_.format, on_disk_));
+  sync_folder(options_.output);
+  for (const auto& [t, state] : last_)
+    kept["last"].push_back({t, std::vector<double>(state.x.begin(), state.x.end()),
+                            std::vector<double>(state.v.begin(), state.v.end())});
+  return kept;
 }
 
 void Recorder::finish() {

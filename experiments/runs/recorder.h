@@ -1,12 +1,14 @@
 // What a run of `simulate` writes as it goes: frames of a scene, or rows of a CSV file for matrices.
 #pragma once
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/command/output.h"
 #include "experiments/inputs/subject.h"
+#include "experiments/runs/fnv1a.h"
 #include "experiments/simulate_options.h"
 
 namespace springstab {
@@ -19,7 +21,13 @@ class Recorder {
 
   /// What lies after t is taken back first: a divergence was undone.
   void record(double t, const State<Vector>& state);
-  /// Where it is; what was recorded is in the system's hands by then.
+  /// With --keep-diverged, for a run that has diverged: what it saw last, each step, up to 32 of them.
+  void record_last();
+  int last_steps() const { return last_steps_; }
+
+  /// Hands what was recorded to the system. Throws InputError if it does not take it.
+  void flush();
+  /// Where it is; what was recorded is on disk by then.
   Json kept();
   void finish();
 
@@ -28,18 +36,31 @@ class Recorder {
   int written() const { return static_cast<int>(frames_.size()); }
 
  private:
+  bool keeps_last() const { return options_.keep_diverged && !options_.output.empty(); }
+  void remember(double t, const State<Vector>& state);
+  void write(double t, const State<Vector>& state);
+  void write_row(const std::string& row);
+
   // A hair early: the time of a step is a rounded sum.
   double next_time() const { return options_.duration * due_ / options_.frames * (1 - 1e-9); }
 
   Subject& subject_;
   const SimulateOptions& options_;
   std::optional<OutputFile> csv_;
+  Fnv1a csv_hash_;  // of all that is in it
   struct Frame {
     double t;  // [s]
     int due;
   };
   std::vector<Frame> frames_;
   int due_ = 0, most_ = 0;
+  int on_disk_ = 0;  // frames
+  struct Moment {
+    double t;  // [s]
+    State<Vector> state;
+  };
+  std::deque<Moment> last_;  // if they are to be kept, in the order of time
+  int last_steps_ = 0;       // of these, recorded
 };
 
 }  // namespace springstab

@@ -29,11 +29,16 @@ struct SpringMaterial {
 /// The largest grid: its springs and matrix already take tens of gigabytes.
 inline constexpr int max_particles = 20'000'000;
 
+/// How triangles divide a grid's cells: each along the diagonal from particle (i, j) to (i+1, j+1), or where
+/// i + j is odd along the other one, so that no direction is preferred.
+enum class Diagonals { uniform, alternating };
+
 /// rows × columns particles; particle i·columns + j rests at (j·spacing, 0, i·spacing).
 struct Grid {
   int rows = 0;
   int columns = 0;
-  double spacing = 0.025;  // [m]
+  double spacing = 0.025;                    // [m]
+  Diagonals diagonals = Diagonals::uniform;  // of triangles; springs lie on both
 };
 
 /// A damped Hookean spring between two particles, i < j.

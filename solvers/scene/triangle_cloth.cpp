@@ -124,8 +124,9 @@ TriangleCloth make_cloth(const Grid& grid, const ClothMaterial& material) {
   for (int i = 0; i + 1 < grid.rows; ++i)
     for (int j = 0; j + 1 < grid.columns; ++j) {
       const int p = i * grid.columns + j, q = p + grid.columns;
-      triangles.push_back(triangle(p, p + 1, q + 1));
-      triangles.push_back(triangle(p, q + 1, q));
+      const bool other = grid.diagonals == Diagonals::alternating && (i + j) % 2 != 0;
+      triangles.push_back(triangle(p, p + 1, other ? q : q + 1));
+      triangles.push_back(triangle(other ? p + 1 : p, q + 1, q));
     }
   finish(cloth, std::move(triangles), true, "grid");
   return cloth;

@@ -3,8 +3,7 @@
 // elements, and those into the terms of a scene.
 //
 // Polygons become triangles as a fan from their first corner (so a quad is split between its first and third
-// corner, and polygons should be convex); the cell of a grid between the particles (i, j) and (i+1, j+1),
-// which are joined.
+// corner, and polygons should be convex); the cell of a grid along one of its diagonals (Diagonals).
 //
 // Where a triangle lies in the cloth's own coordinates (u, v) [m]: on a grid, u = x along a row, v = z from
 // row to row; on a mesh, see rest_coordinates.h.

@@ -17,7 +17,7 @@ namespace {
 struct ComplexityOptions {
   bool quick = false;
   std::string plots, output;  // folders; without output nothing is written
-  bool resume = false;
+  EarlierRun earlier;
 };
 
 /// The first row is the heading.
@@ -137,7 +137,7 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
   }
   Journal journal(options.output,
                   identity_of("complexity", {{"quick", options.quick}, {"seed", common.seed}}, {}),
-                  options.resume, common.quiet);
+                  options.earlier, common.quiet);
   std::vector<StudyResult> studies;
   Json files = Json::array(), list = Json::array();
   bool finished = true;
@@ -198,7 +198,7 @@ Subcommand complexity_command() {
       .options =
           {Option("--quick", &o->quick, "smaller cloths, a shorter time, three rounds: within a minute"),
            Option("--output", &o->output, "folder for Figures 5 to 7 and every run as CSV").shown_as("DIR"),
-           plots_option(o->plots), resume_option(o->resume)},
+           plots_option(o->plots), resume_option(o->earlier), overwrite_option(o->earlier)},
       .run = [o](const CommonOptions& common) { return run_complexity(common, *o); }};
 }
 

@@ -232,14 +232,15 @@ Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
 static int run_divergence(const CommonOptions& common, const DivergenceOptions& options) {
   Scenes scenes = subjects(options);
   Json inputs = Json::array();
-  for (const std::string& scene : options.scenes) inputs.push_back(contents_of(scene, options.resume));
+  for (const std::string& scene : options.scenes)
+    inputs.push_back(contents_of(scene, options.earlier.resume));
   const Json settings{{"pin", options.pin},
                       {"cells", options.cells},
                       {"steps", options.steps},
                       {"quick", options.quick},
                       {"seed", common.seed}};
   if (!options.output.empty()) make_folder(options.output);
-  Journal journal(options.output, identity_of("divergence", settings, inputs), options.resume, common.quiet);
+  Journal journal(options.output, identity_of("divergence", settings, inputs), options.earlier, common.quiet);
   const Json report = report_of(common, options, std::move(scenes), journal);
   if (common.json)
     print_json(report);
@@ -299,7 +300,7 @@ Subcommand divergence_command() {
            Option("--steps", &o->given_steps, "steps of each cell").with_default(std::to_string(o->steps)),
            Option("--quick", &o->quick, "small scenes, few steps; 100 cells a side unless given"),
            Option("--output", &o->output, "folder for the CSV files").shown_as("DIR"),
-           resume_option(o->resume)},
+           resume_option(o->earlier), overwrite_option(o->earlier)},
       .run = [o](const CommonOptions& common) { return run_divergence(common, o->resolved()); }};
 }
 

@@ -12,7 +12,7 @@ struct DivergenceOptions {
   long steps = 1024;                // of each cell
   bool quick = false;
   std::string output;  // folder, empty for none
-  bool resume = false;
+  EarlierRun earlier;
 };
 
 /// Compares each method's region with simulated cells and each scene's limits with simulated cloth; writes

@@ -7,6 +7,7 @@
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
+#include "experiments/inputs/size_report.h"
 #include "experiments/runs/identity.h"
 #include "experiments/runs/journal.h"
 #include "experiments/studies/precision/contest.h"
@@ -25,7 +26,7 @@ struct WorkPrecisionOptions {
   std::string damping = "own";
   bool libraries = true;
   std::string plots, output;  // folders; no output: nothing is written
-  bool resume = false;
+  EarlierRun earlier;
 };
 
 void check(const WorkPrecisionOptions& options) {
@@ -99,6 +100,7 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
   check(options);
   Subject subject(options.input);
   print_mesh_notes(subject);
+  print_size_warning(subject);
   Problem problem(title_of(options.input), std::move(subject), options.duration, common);
   if (options.damping == "designed") {
     expect_designable(problem.model());
@@ -109,8 +111,8 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
                       {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
                       {"libraries", options.libraries},   {"seed", common.seed}};
   Journal journal(options.output,
-                  identity_of("work-precision", settings, contents_of(options.input, options.resume)),
-                  options.resume, common.quiet);
+                  identity_of("work-precision", settings, contents_of(options.input, options.earlier.resume)),
+                  options.earlier, common.quiet);
   const std::string missing = missing_peers();
   if (options.libraries && !missing.empty() && !common.quiet)
     std::cerr << "springstab: left out, for they were not found when this was built: " << missing << '\n';
@@ -171,7 +173,7 @@ Subcommand work_precision_command() {
            Option("!--no-libraries", &o->libraries, "without SUNDIALS, GSL and Boost.odeint"),
            Option("--output", &o->output, "folder for the runs as CSV, the figure, and the reference")
                .shown_as("DIR"),
-           plots_option(o->plots), resume_option(o->resume)}),
+           plots_option(o->plots), resume_option(o->earlier), overwrite_option(o->earlier)}),
       .run = [o](const CommonOptions& common) { return run_work_precision(common, *o); }};
 }
 

@@ -1,0 +1,37 @@
+#include "experiments/simulate_notes.h"
+
+#include <iostream>
+
+#include "analysis/method.h"
+#include "experiments/inputs/size_report.h"
+
+namespace springstab {
+
+void print_unused_options(const CommonOptions& common, const SimulateOptions& options, bool matrices) {
+  const MethodInfo& method = Method(options.method).info();
+  const auto unused = [&](const char* option, bool useless, const std::string& reason) {
+    const bool told = useless && common.given.contains(option);
+    if (told) std::cerr << "springstab: note: " << option << " has no use here: " << reason << '\n';
+    return told;
+  };
+  const std::string& name = options.method;
+  unused("--relinearize", !method.linearized, name + " freezes no forces");
+  unused("--hessian", !method.linearized && !method.implicit, name + " takes its steps without K");
+  unused("--solver", !method.implicit, name + " solves no linear system");
+  unused("--cg-tolerance", !method.implicit, name + " solves no linear system") ||
+      unused("--cg-tolerance", matrices, "systems of matrices are solved directly") ||
+      unused("--cg-tolerance", options.direct, "--solver direct is exact");
+  unused("--safety", options.step.has_value(), "--step is given");
+  for (const char* option : {"--format", "--frames"})
+    unused(option, options.output.empty(), "without --output nothing is written");
+  unused("--format", matrices && !options.output.empty(), "matrices write trajectory.csv");
+}
+
+void print_step_warning(Subject& subject, const State<Vector>& start, double step) {
+  const std::string what = exceeded(step, time_scales(subject, slowest_period(subject, start)));
+  if (!what.empty())
+    std::cerr << text("springstab: warning: the step of %.4g s exceeds %s: too long to follow the motion\n",
+                      step, what.c_str());
+}
+
+}  // namespace springstab

@@ -137,7 +137,9 @@ Json limits_json(std::string_view method, const MethodLimits& limits, double d0)
 
 std::string cell(const std::optional<double>& h) { return h ? text("%.6g", *h) : "-"; }
 
-void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping, double safety) {
+void print(StructureLimits& answer, double safety) {
+  const auto& [s, damping, every_pose] = answer.structure();
+  const StiffestMode& k0 = answer.k0();
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
   if (s.condensed > 0)
     std::cout << text(" (after eliminating %ld without mass", static_cast<long>(s.condensed))
@@ -146,8 +148,12 @@ void print(const StructuralMatrices& s, const StiffestMode& k0, const DampingMod
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
   std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
-  if (k0.indefinite)
-    std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";
+  if (k0.indefinite) {
+    const double rate = answer.growth().value_or(0);
+    std::cout << "K is indefinite: some motions grow by themselves"
+              << (rate > 0 ? text(", the fastest at %.10g 1/s", rate) : "")
+              << "; limits are for the others\n";
+  }
   std::cout << "damping: " << name(damping.kind);
   if (damping.kind == DampingModel::Kind::rayleigh)
     std::cout << text(", d0 = %g 1/s, alpha = %g s", damping.d0, damping.alpha);
@@ -216,7 +222,7 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety)
               << '\n';
     return;
   }
-  print(matrices, k0, damping, safety);
+  print(answer, safety);
   for (const Row& row : rows) print(row.method, row.limits);
   if (!matrices.symmetric)
     std::cout << (answer.growth() ? "\nK or D is not symmetric: these limits are estimates, from all "

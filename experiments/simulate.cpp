@@ -123,6 +123,9 @@ struct Course {
   bool stopped = false;
 
   bool diverged() const { return result.status == StepStatus::diverged; }
+  bool grows(System& system) const {
+    return watch.growth_rate > 0 || watch.grows(system.kinetic_energy(end.v), system.potential_energy(end.x));
+  }
 };
 
 // Runs from the start or from where a run was left.
@@ -176,8 +179,7 @@ Json json_of(const Course& course, const SimulateOptions& options, Subject& subj
               {"steps", course.result.steps},
               {"diverged", course.diverged()},
               {"diverged_at", course.diverged() ? number(course.result.failed_at) : Json()},
-              {"grows", course.watch.grows(system.kinetic_energy(course.end.v),
-                                           system.potential_energy(course.end.x))},
+              {"grows", course.grows(system)},
               {"last_step", decisions.h},
               {"last_relinearize", linearized ? Json(decisions.relinearize) : Json()},
               {"cpu_seconds", course.cpu_seconds},
@@ -238,8 +240,7 @@ void print_report(const Course& course, const SimulateOptions& options, Subject&
   print_decisions(chooser.decisions(), Method(options.method).info().linearized);
   std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy(course.start),
                     energy(course.end));
-  if (course.watch.grows(system.kinetic_energy(course.end.v), system.potential_energy(course.end.x)))
-    std::cout << "the structure is unstable: its motion grows by itself\n";
+  if (course.grows(system)) std::cout << "the structure is unstable: its motion grows by itself\n";
   if (Scene* scene = subject.scene()) {
     const Eigen::Vector3d p = scene->positions(course.end.x).back();
     std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p.x(), p.y(), p.z());

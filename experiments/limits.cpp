@@ -141,8 +141,9 @@ Json limits_json(std::string_view method, const MethodLimits& limits, double d0)
 
 std::string cell(const std::optional<double>& h) { return h ? text("%.6g", *h) : "-"; }
 
-void print(const StructuralMatrices& s, const std::string& size, const StiffestMode& k0,
-           const DampingModel& damping, double safety) {
+void print(StructureLimits& answer, const std::string& size, double safety) {
+  const auto& [s, damping, every_pose] = answer.structure();
+  const StiffestMode& k0 = answer.k0();
   std::cout << text("%ld unknowns", static_cast<long>(s.size()));
   if (s.condensed > 0)
     std::cout << text(" (after eliminating %ld without mass", static_cast<long>(s.condensed))
@@ -152,8 +153,12 @@ void print(const StructuralMatrices& s, const std::string& size, const StiffestM
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
   std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
-  if (k0.indefinite)
-    std::cout << "K is indefinite: some motions grow by themselves; limits are for the others\n";
+  if (k0.indefinite) {
+    const double rate = answer.growth().value_or(0);
+    std::cout << "K is indefinite: some motions grow by themselves"
+              << (rate > 0 ? text(", the fastest at %.10g 1/s", rate) : "")
+              << "; limits are for the others\n";
+  }
   std::cout << "damping: " << name(damping.kind);
   if (damping.kind == DampingModel::Kind::rayleigh)
     std::cout << text(", d0 = %g 1/s, alpha = %g s", damping.d0, damping.alpha);
@@ -238,7 +243,7 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
               << '\n';
     return;
   }
-  print(matrices, size, k0, damping, safety);
+  print(answer, size, safety);
   for (const Row& row : rows) print(row.method, row.limits);
   if (!matrices.symmetric)
     std::cout << (answer.growth() ? "\nK or D is not symmetric: these limits are estimates, from all "

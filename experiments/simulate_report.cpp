@@ -82,8 +82,7 @@ Json json_of(const Course& course, const SimulateOptions& options, Subject& subj
               {"steps", course.result.steps},
               {"diverged", course.diverged()},
               {"diverged_at", course.diverged() ? number(course.result.failed_at) : Json()},
-              {"grows", course.watch.grows(system.kinetic_energy(course.end.v),
-                                           system.potential_energy(course.end.x))},
+              {"grows", course.grows(system)},
               {"last_step", decisions.h},
               {"last_relinearize", linearized ? Json(decisions.relinearize) : Json()},
               {"cpu_seconds", course.cpu_seconds},
@@ -120,12 +119,13 @@ void print_report(const Course& course, const SimulateOptions& options, Subject&
   if (subject.scene()) std::cout << size_text(subject) << '\n';
   std::cout << text("energy %.6g J at the start, %.6g J at the end\n", energy_of(course.start, system),
                     energy_of(course.end, system));
-  if (const double gain = gained(course, system);
-      gain >
-      std::max(told_gain * turned_over(course, system), course.watch.mass * told_speed * told_speed / 2))
-    std::cout << text("the run gained %.3g J beyond what gravity can give: the step is too long\n", gain);
-  if (course.watch.grows(system.kinetic_energy(course.end.v), system.potential_energy(course.end.x)))
+  if (course.grows(system)) {
     std::cout << "the structure is unstable: its motion grows by itself\n";
+  } else if (const double gain = gained(course, system);
+             gain > std::max(told_gain * turned_over(course, system),
+                             course.watch.mass * told_speed * told_speed / 2)) {
+    std::cout << text("the run gained %.3g J beyond what gravity can give: the step is too long\n", gain);
+  }
   if (Scene* scene = subject.scene()) {
     const Eigen::Vector3d p = scene->positions(course.end.x).back();
     std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p.x(), p.y(), p.z());

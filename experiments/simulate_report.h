@@ -20,6 +20,9 @@ struct Course {
   bool stopped = false;
 
   bool diverged() const { return result.status == StepStatus::diverged; }
+  bool grows(System& system) const {
+    return watch.growth_rate > 0 || watch.grows(system.kinetic_energy(end.v), system.potential_energy(end.x));
+  }
 };
 
 /// `frames` is how many were written.

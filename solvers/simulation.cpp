@@ -37,11 +37,12 @@ struct Checkpoint {
 }  // namespace
 
 double EnergyWatch::speed_bound(double t) const {
-  return std::sqrt(std::max(initial_energy, 0.)) + gravity * std::sqrt(mass / 2) * t;
+  const double passive = std::sqrt(std::max(initial_energy, 0.)) + gravity * std::sqrt(mass / 2) * t;
+  return growth_rate > 0 ? passive * std::exp(growth_rate * t) : passive;
 }
 
 bool EnergyWatch::diverged(double kinetic_energy, double t) const {
-  return !(std::sqrt(kinetic_energy) <= slack * speed_bound(t));
+  return !(std::isfinite(kinetic_energy) && std::sqrt(kinetic_energy) <= slack * speed_bound(t));
 }
 
 bool EnergyWatch::gained(double total_energy, double t) const {
@@ -49,7 +50,7 @@ bool EnergyWatch::gained(double total_energy, double t) const {
 }
 
 bool EnergyWatch::grows(double kinetic_energy, double potential_energy) const {
-  return may_grow && potential_energy < -kinetic_energy / 2;
+  return (may_grow || growth_rate > 0) && potential_energy < -kinetic_energy / 2;
 }
 
 RunSoFar start_of(const StepPlan& plan) {

@@ -32,8 +32,11 @@ struct StepPlan {
 /// themselves, near a double eigenvalue by a factor of hundreds; a diverging run grows without bound.)
 /// The total energy never grows; a run that has gained `largest_gain` times B(t) is about to diverge. That
 /// takes an evaluation of the energy, so it is asked at checkpoints only, and not at all where nothing limits
-/// the gain. A system that `may_grow`, since its K may be indefinite, is not watched while its kinetic energy
-/// comes out of a potential energy below zero: there it may grow as it likes, as long as it is finite.
+/// the gain. A linear system that is known to be unstable has `growth_rate` > 0, and √B(t) is multiplied by
+/// exp(growth_rate t). With K' >= -κ the energy plus κ x'Mx obeys that for the rate √κ: E0 then holds κ
+/// x0'Mx0, and the rate is that of the method's own steps, which need not be the same. A system that
+/// `may_grow`, as far as is known, is not watched while its kinetic energy comes out of a potential energy
+/// below zero: there it may grow as it likes, as long as it is finite.
 struct EnergyWatch {
   double initial_energy = 0;  // E0 [J]
   double gravity = 0;         // g [m/s²]
@@ -42,6 +45,7 @@ struct EnergyWatch {
   double initial_total = 0;  // kinetic plus potential energy at the start [J]
   double largest_gain = std::numeric_limits<double>::infinity();
   bool may_grow = false;
+  double growth_rate = 0;  // [1/s]
 
   bool diverged(double kinetic_energy, double t) const;
   bool gained(double total_energy, double t) const;

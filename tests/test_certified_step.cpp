@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "analysis/limits/general_damping.h"
+#include "analysis/limits/structure_limits.h"
 #include "analysis/method.h"
 #include "analysis/proofs/step_magnitude.h"
 #include "analysis/spectra/generator_spectrum.h"
@@ -807,7 +808,7 @@ BOOST_AUTO_TEST_CASE(gyroscopic_forces_leave_the_eigenvalues_to_decide) {
     BOOST_TEST((implicit.status == LimitStatus::unlimited));
     BOOST_TEST(!implicit.h_certified);
     BOOST_TEST(!general.limits("explicit-euler").h_max);  // undamped
-    BOOST_TEST((general.limits("symplectic-euler").status == LimitStatus::unknown));
+    BOOST_TEST((general.limits("symplectic-euler").status == LimitStatus::none));
   }
 }
 
@@ -862,6 +863,174 @@ BOOST_AUTO_TEST_CASE(the_shaft_is_certified_below_its_limit) {
   BOOST_TEST(rk4.h_certified.value() >= 0.99 * rk4.h_max.value());
   BOOST_TEST(symplectic.h_certified.value() <= symplectic.h_max.value());
   BOOST_TEST(symplectic.h_max.value() <= 2 / std::sqrt(k0.value) * (1 + 1e-9));
+}
+
+// Symplectic Euler's own matrix decides. Undamped, modes are those of K' alone, and 2/√2 is the limit of
+// [[2, 1], [0, 1]]. The benchmark bicycle steers and leans as it rolls. A rotor on bearings, undamped, is
+// stable, and unstable at every step of this method: |λ| is 1 + 1.8e-8 at h = 1e-7.
+BOOST_AUTO_TEST_CASE(symplectic_eulers_own_matrix_decides_without_symmetry) {
+  using Dense = Eigen::MatrixXd;
+  const auto limits = [](const Dense& k, const Dense& m, const Dense& d) {
+    const StructuralMatrices s =
+        prepare_nonsymmetric(k.sparseView(0.0, 0.0), m.sparseView(0.0, 0.0), d.sparseView(0.0, 0.0));
+    return GeneralDamping(s, stiffest_mode(s), classify_damping(s), 1.5, true).limits("symplectic-euler");
+  };
+  const Dense one = Dense::Identity(2, 2), none = Dense::Zero(2, 2);
+  const MethodLimits triangle = limits(Dense{{2, 1}, {0, 1}}, one, none);
+  BOOST_TEST(triangle.h_max.value() == std::sqrt(2), tolerance(1e-9));
+  BOOST_TEST(triangle.recommended.value() == std::sqrt(2 / 1.5), tolerance(1e-9));
+  BOOST_TEST((triangle.source == LimitSource::estimate && !triangle.h_certified));
+  const MethodLimits bicycle =
+      limits(Dense{{-794.1195, 1889.423905}, {-25.501095, 58.48007}},
+             Dense{{80.812, 2.3194}, {2.3194, 0.29784}}, Dense{{0, 169.33}, {-4.25175, 8.427}});
+  BOOST_TEST(bicycle.h_max.value() == 0.24078, tolerance(2e-5));
+  const Dense block{{1e6, 5e4}, {5e4, 5e4}};
+  Dense k = Dense::Zero(4, 4), g = k;
+  k.topLeftCorner(2, 2) = block;
+  k.bottomRightCorner(2, 2) = Dense{{1e6, -5e4}, {-5e4, 5e4}};
+  g(3, 1) = -380;
+  g(1, 3) = 380;
+  const MethodLimits rotor = limits(k, Eigen::Vector4d(10, 0.2, 10, 0.2).asDiagonal().toDenseMatrix(), g);
+  BOOST_TEST((rotor.status == LimitStatus::none && !rotor.h_max && !rotor.recommended));
+}
+
+// Up to the limit no step is unstable, and beyond it the next is: of any K and D whose motion does not grow.
+BOOST_AUTO_TEST_CASE(the_limit_without_symmetry_is_where_the_matrix_fails_first) {
+  RandomNets random(41);
+  int limited = 0;
+  for (int i = 0; i < 60; ++i) BOOST_TEST_CONTEXT("system " << i) {
+      const Eigen::Index n = 2 + i % 5;
+      const auto entries = [&](double size) {
+        Eigen::MatrixXd a(n, n);
+        for (double& entry : a.reshaped()) entry = random.uniform(-size, size);
+        return a;
+      };
+      const Eigen::MatrixXd a = entries(1), b = entries(1);
+      const Eigen::MatrixXd k = a * a.transpose() + 0.2 * Eigen::MatrixXd::Identity(n, n) + entries(0.05),
+                            d = 0.3 * b * b.transpose() + 0.2 * Eigen::MatrixXd::Identity(n, n) +
+                                entries(0.1);
+      const StructuralMatrices s =
+          prepare_nonsymmetric(k.sparseView(0.0, 0.0), SparseMatrix(), d.sparseView(0.0, 0.0));
+      GeneralDamping general(s, stiffest_mode(s), classify_damping(s), 1.5, true);
+      if (general.growth().value() > 0) continue;
+      const MethodLimits limits = general.limits("symplectic-euler");
+      BOOST_REQUIRE((limits.status == LimitStatus::limited));
+      ++limited;
+      const double h = *limits.h_max;
+      for (int j = 1; j <= 40; ++j)
+        BOOST_TEST(largest_modulus(transition_matrix(s, "symplectic-euler", h * j / 40.0001)) <= 1 + 1e-9);
+      BOOST_TEST(largest_modulus(transition_matrix(s, "symplectic-euler", h * (1 + 1e-6))) > 1);
+      BOOST_TEST(*limits.recommended < h);
+    }
+  BOOST_TEST(limited > 40);
+}
+
+// What decays counts, what grows does not, whatever the damping is called: the same K, indefinite, with
+// d0 M + alpha K, and with a trace of other damping beside it.
+BOOST_AUTO_TEST_CASE(an_unstable_structure_has_one_limit_whatever_its_damping_is_called) {
+  const Eigen::MatrixXd turn =
+      Eigen::HouseholderQR<Eigen::MatrixXd>(Eigen::MatrixXd{{1, 2, -1}, {0.5, -1, 3}, {2, 0.3, 1}})
+          .householderQ();
+  Eigen::MatrixXd trace = Eigen::MatrixXd::Zero(3, 3);
+  trace(0, 0) = 1e-9;
+  for (const double lowest : {-0.3, -60.0})
+    for (const double alpha : {0.0, 0.02}) {
+      const Eigen::MatrixXd k = turn * Eigen::Vector3d(9, 2, lowest).asDiagonal() * turn.transpose(),
+                            symmetric = (k + k.transpose()) / 2,
+                            d = 0.3 * Eigen::MatrixXd::Identity(3, 3) + alpha * symmetric;
+      const auto prepared = [&](const Eigen::MatrixXd& damping) {
+        return prepare(symmetric.sparseView(0.0, 0.0), SparseMatrix(), damping.sparseView(0.0, 0.0));
+      };
+      StructureLimits rayleigh(structure_of(prepared(d))), general(structure_of(prepared(d + trace)));
+      BOOST_TEST((rayleigh.structure().damping.kind == DampingModel::Kind::rayleigh));
+      BOOST_TEST((general.structure().damping.kind == DampingModel::Kind::general));
+      BOOST_TEST(rayleigh.growth().value() == general.growth().value(), tolerance(1e-7));
+      for (const Method& method : all_methods())
+        BOOST_TEST_CONTEXT(method.name() << ", lowest " << lowest << ", alpha " << alpha) {
+          const MethodLimits &one = rayleigh.limits(method), &other = general.limits(method);
+          BOOST_TEST((one.status == other.status));
+          if (one.status == LimitStatus::limited) {
+            // the line of modes holds more than these three
+            BOOST_TEST(*one.h_max <= *other.h_max * (1 + 1e-6));
+            if (lowest < -1) BOOST_TEST(*one.h_max >= *other.h_max * (1 - 1e-6));
+          }
+        }
+    }
+}
+
+// Negative damping: K = diag(4, 1), D = diag(-0.1, 0.1). The stiff motion grows by itself, and turns over at
+// Y = 4 + 2|X|; the other one leaves at 2hd + h²k = 4. Where all motions grow nothing limits the step.
+BOOST_AUTO_TEST_CASE(symplectic_euler_has_a_limit_with_negative_damping) {
+  const auto limits = [](const Eigen::Vector2d& k, const Eigen::Vector2d& d) {
+    const StructuralMatrices s =
+        prepare(SparseMatrix(k.asDiagonal()), SparseMatrix(), SparseMatrix(d.asDiagonal()));
+    return StructureLimits(structure_of(s)).limits("symplectic-euler");
+  };
+  const MethodLimits mixed = limits({4, 1}, {-0.1, 0.1});
+  BOOST_TEST(mixed.h_max.value() == -0.1 + std::sqrt(4.01), tolerance(1e-9));
+  for (const Eigen::Vector2d& d : {Eigen::Vector2d(-0.4, -0.1), Eigen::Vector2d(-0.1, -0.1)})
+    BOOST_TEST((limits({4, 1}, d).status == LimitStatus::unlimited));
+}
+
+// Masses over ten decades: the real parts of slow motions are rounding beside the fast ones, and decide for
+// explicit Euler and RK2. Long doubles know them.
+BOOST_AUTO_TEST_CASE(real_parts_are_known_to_their_own_scale) {
+  using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  RandomNets random(43);
+  for (int i = 0; i < 40; ++i) BOOST_TEST_CONTEXT("system " << i) {
+      const Eigen::Index n = 3 + i % 6;
+      Eigen::VectorXd mass(n);
+      for (double& m : mass) m = random.log_uniform(-5, 5);
+      mass[0] = 1e-5;
+      mass[n - 1] = 1e5;
+      const auto definite = [&](double size) {
+        Eigen::MatrixXd a(n, n);
+        for (double& entry : a.reshaped()) entry = random.uniform(-1, 1);
+        const Eigen::MatrixXd b = size * (a * a.transpose() + 0.1 * Eigen::MatrixXd::Identity(n, n));
+        return Eigen::MatrixXd((b + b.transpose()) / 2);
+      };
+      const Eigen::MatrixXd k = definite(100), d = definite(random.log_uniform(-4, -1));
+      Long generator = Long::Zero(2 * n, 2 * n);
+      for (Eigen::Index a = 0; a < n; ++a) {
+        generator(a, n + a) = 1;
+        for (Eigen::Index b = 0; b < n; ++b) {
+          const long double root =
+              std::sqrt(static_cast<long double>(mass[a])) * std::sqrt(static_cast<long double>(mass[b]));
+          generator(n + a, b) = -k(a, b) / root;
+          generator(n + a, n + b) = -d(a, b) / root;
+        }
+      }
+      const auto truth = Eigen::EigenSolver<Long>(generator, false).eigenvalues().eval();
+      double expected = infinity;
+      for (const std::complex<long double> mu : truth)
+        expected = std::min(expected, static_cast<double>(-2 * mu.real() / std::norm(mu)));
+      const StructuralMatrices s =
+          prepare(k.sparseView(0.0, 0.0), SparseMatrix(mass.asDiagonal()), d.sparseView(0.0, 0.0));
+      const auto modes = generator_spectrum(s).value();
+      BOOST_TEST(modes.size() == static_cast<std::size_t>(2 * n));
+      BOOST_TEST(critical_step("explicit-euler", modes).value() == expected, tolerance(1e-6));
+      BOOST_TEST(critical_step("rk2", modes).has_value());
+    }
+}
+
+// A free chain of a grain and two ships: the slow motion has 1e-7 of the fast one's rate and is no rigid one,
+// and half of its damping is 1e-9 of that again. A mode k has the real part -alpha k / 2.
+BOOST_AUTO_TEST_CASE(slow_motions_are_told_from_rigid_ones) {
+  const Eigen::MatrixXd k{{1, -1, 0}, {-1, 2, -1}, {0, -1, 1}};
+  const Eigen::Vector3d mass(1e-7, 1e7, 3e7);
+  constexpr double alpha = 1e-5;
+  const StructuralMatrices s = prepare(k.sparseView(0.0, 0.0), SparseMatrix(mass.asDiagonal()),
+                                       SparseMatrix(alpha * k.sparseView(0.0, 0.0)));
+  const auto modes = generator_spectrum(s).value();
+  BOOST_TEST(modes.size() == 4U);
+  for (const double stiffness :
+       {1 / 1e7 + 1 / 3e7, 1e7}) {  // to 1e-14: the grain weighs nothing beside ships
+    const double real = -alpha * stiffness / 2;
+    BOOST_TEST(std::count_if(modes.begin(), modes.end(), [&](std::complex<double> mu) {
+                 return std::abs(mu.real() - real) < -1e-9 * real &&
+                        std::abs(std::norm(mu) - stiffness) < 1e-9 * stiffness;
+               }) == 2);
+  }
 }
 
 BOOST_AUTO_TEST_CASE(nothing_is_certified_of_structures_that_may_grow_by_themselves) {

@@ -218,6 +218,28 @@ BOOST_AUTO_TEST_CASE(what_grows_by_itself_does_not_diverge) {
                    .status == 4);
 }
 
+// K = diag(2, -1): the motion grows as e^t, and no method's run of it is a divergence: at a step that is
+// given, at the recommended one where there is one, at one at which a fast motion is not resolved.
+BOOST_AUTO_TEST_CASE(growth_is_followed_by_every_method) {
+  file("saddle.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 2\n2 2 -1\n");
+  const Outcome limits = (*this)("limits --stiffness saddle.mtx --json");
+  BOOST_TEST(limits.json().at("growth_rate").get<double>() == 1, boost::test_tools::tolerance(1e-14));
+  BOOST_TEST((*this)("limits --stiffness saddle.mtx").out.find("the fastest at 1 1/s") != std::string::npos);
+  int recommended = 0;
+  for (const auto& method : limits.json().at("methods"))
+    for (const std::string step : {"", " --step 0.01", " --step 0.25"})
+      BOOST_TEST_CONTEXT(method.at("name") << step) {
+        if (step.empty() && method.at("status") == "none") continue;
+        recommended += step.empty();
+        const Outcome run = (*this)("simulate --stiffness saddle.mtx --json --duration 40 --method " +
+                                    method.at("name").get<std::string>() + step);
+        BOOST_TEST(run.status == 0);
+        BOOST_TEST(run.json().at("grows") == true);
+        BOOST_TEST(run.json().at("diverged") == false);
+      }
+  BOOST_TEST(recommended >= 4);
+}
+
 BOOST_AUTO_TEST_CASE(what_a_run_cannot_use_is_refused) {
   const auto refused = [&](const std::string& options) {
     const Outcome run =

@@ -14,6 +14,7 @@
 #include "analysis/limits/step_limits.h"
 #include "analysis/method.h"
 #include "analysis/regions/amplification.h"
+#include "solvers/linear/dense_solvers.h"
 
 BOOST_AUTO_TEST_SUITE(step_limits)
 
@@ -398,6 +399,45 @@ BOOST_AUTO_TEST_CASE(the_recommended_step_is_the_smallest_of_four) {
   const StabilityRegion& rk4 = region_of("rk4");
   BOOST_TEST(critical_step(rk4, stiffer) > critical_step(rk4, overdamped));
   BOOST_TEST(recommended_step(rk4, overdamped, f) == critical_step(rk4, overdamped) / std::sqrt(f));
+}
+
+// Of a mode with k < 0 one motion grows by itself, e^{μt} with μ > 0, and one decays: the step's matrix has
+// no more than one eigenvalue outside the unit circle up to H, and two beyond. Where eigenvalues are R(hμ)
+// the decaying motion has the limit of an overdamped mode of that rate.
+BOOST_AUTO_TEST_CASE(the_decaying_motion_of_a_mode_that_grows_counts) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> decades(-3, 3), uniform(-1, 1);
+  for (const Method& method : all_methods()) {
+    const StabilityRegion& region = stability_region(method);
+    const auto outside = [&](double k, double d, double h) {
+      const Eigen::MatrixXd a = method.amplification(h * d, h * h * k);
+      const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(a, false).eigenvalues();
+      return (values.cwiseAbs().array() > 1 + 1e-12).count();
+    };
+    for (int i = 0; i < 100; ++i) {
+      const double k = -std::pow(10, decades(random));
+      const double d = uniform(random) * std::pow(10, decades(random));
+      const double h = region.critical_step_beside_growth(k, d);
+      BOOST_TEST_CONTEXT(method.name() << ", k = " << k << ", d = " << d) {
+        const double root = std::hypot(d, 2 * std::sqrt(-k)),
+                     mu = d > 0 ? (d + root) / 2 : -2 * k / (root - d);
+        if (method.name() != "symplectic-euler")
+          BOOST_TEST(close(h, region.critical_step(mu * mu, 2 * mu), 1e-9));
+        const double end = std::isfinite(h) ? 0.9999 * h : 1e3 / mu;
+        for (int j = 1; j <= 50; ++j) BOOST_TEST(outside(k, d, end * j / 50) <= 1);
+        if (std::isfinite(h)) BOOST_TEST(outside(k, d, 1.0001 * h) == 2);
+        const RayleighModes line{.k_max = 1e-9, .k_lowest = k}, both{.k_max = 2, .k_lowest = k};
+        BOOST_TEST(critical_step(region, both) <= critical_step(region, line));
+      }
+    }
+    BOOST_TEST(region.critical_step_beside_growth(3, -0.1) == inf);
+    BOOST_CHECK_THROW(region.critical_step_beside_growth(3, 0.1), std::invalid_argument);
+    BOOST_CHECK_THROW(critical_step(region, {.k_max = 1, .k_lowest = 1}), std::invalid_argument);
+  }
+  // λ = -1 at 2X + Y = 4; of an undamped mode the decaying motion never leaves.
+  const StabilityRegion& symplectic = region_of("symplectic-euler");
+  BOOST_TEST(symplectic.critical_step_beside_growth(-1, 0) == inf);
+  BOOST_TEST(close(symplectic.critical_step_beside_growth(-1, 3), 3 - std::sqrt(5.0), 1e-12));
 }
 
 BOOST_AUTO_TEST_CASE(bad_input_is_refused) {

@@ -6,17 +6,26 @@
 
 #include "analysis/constants.h"
 #include "analysis/spectra/generator_spectrum.h"
+#include "analysis/spectra/transition_limit.h"
 
 namespace springstab {
 namespace {
 
 constexpr Eigen::Index shift_invert_limit = 20'000;
 constexpr double near_enough = 0.9;  // certified / estimate
+constexpr std::string_view no_step = "no positive step is stable";
 
 // The positive root of a h d + b h² k = c, without cancellation; ∞ where there is none.
 double root(double a, double b, double c, const ModePoint& p) {
   const double linear = a * std::max(p.d, 0.0), quadratic = b * std::max(p.k, 0.0);
   return 2 * c / (linear + std::hypot(linear, 2 * std::sqrt(c * quadratic)));
+}
+
+StructuralMatrices stiffened(const StructuralMatrices& s, const Stiffening& stiffening) {
+  StructuralMatrices stiffer = s;
+  stiffer.stiffness *= stiffening.factor;
+  if (stiffening.added_damping > 0) stiffer.damping += stiffening.added_damping * s.stiffness;
+  return stiffer;
 }
 
 }  // namespace
@@ -167,10 +176,7 @@ void GeneralDamping::add_certified(const Method& method, MethodLimits& limits) {
 const std::optional<std::vector<std::complex<double>>>& GeneralDamping::own_spectrum() {
   if (spectra_.empty())
     for (const Stiffening& stiffening : stiffenings()) {
-      StructuralMatrices stiffer = s_;
-      stiffer.stiffness *= stiffening.factor;
-      if (stiffening.added_damping > 0) stiffer.damping += stiffening.added_damping * s_.stiffness;
-      spectra_.push_back(generator_spectrum(stiffer));
+      spectra_.push_back(generator_spectrum(stiffened(s_, stiffening)));
       if (!spectra_.back()) break;
     }
   return spectra_.front();
@@ -188,13 +194,21 @@ void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
   double least = infinity;
   std::vector<double> steps;
   const bool semidefinite = s_.symmetric && !k0_.indefinite && damping_.semidefinite;
-  for (const auto& spectrum : spectra_) {
-    if (semidefinite && spectrum && growth_rate(*spectrum) > 0) return;  // which cannot be: rounding is large
-    const std::optional<double> h = spectrum ? critical_step(method, *spectrum) : std::nullopt;
+  const std::vector<Stiffening> all = stiffenings();
+  for (std::size_t i = 0; i < spectra_.size() && spectra_[i]; ++i) {
+    if (semidefinite && growth_rate(*spectra_[i]) > 0) return;  // which cannot be: rounding is large
+    const std::optional<double> h = has_stability_function(method)
+                                        ? critical_step(method, *spectra_[i])
+                                        : transition_limit(method, stiffened(s_, all[i]), *spectra_[i]);
+    if (h == 0 && i == 0) {
+      limits.status = LimitStatus::none;
+      limits.unproved = no_step;
+    }
     if (!h || !(*h > 0)) return;
     steps.push_back(*h);
     least = std::min(least, *h);
   }
+  if (steps.size() < all.size()) return;
   limits.h_max = steps.front();
   limits.status = std::isinf(steps.front()) ? LimitStatus::unlimited : LimitStatus::limited;
   limits.source = LimitSource::estimate;
@@ -216,7 +230,7 @@ void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimi
     const std::complex<double> root = std::sqrt(std::complex<double>(p.d * p.d - 4 * p.k));
     for (const std::complex<double> mu : {(-p.d + root) / 2.0, (-p.d - root) / 2.0})
       if (mu.imag() >= 0 && std::abs(mu) > 0)
-        shifts.push_back({critical_step(method, {mu}).value_or(infinity), mu});
+        shifts.push_back({critical_step(method, {mu}, std::abs(mu)).value_or(infinity), mu});
   }
   std::sort(shifts.begin(), shifts.end(), [](const Near& p, const Near& q) { return p.limit < q.limit; });
   constexpr std::size_t most_shifts = 3;

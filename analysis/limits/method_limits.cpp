@@ -69,8 +69,8 @@ MethodLimits method_limits(const Method& method, const StiffestMode& k0, const D
     return limits;
   }
 
-  const RayleighModes modes{std::clamp(k0.smallest.value_or(0), 0.0, k_max), k_max, damping.d0,
-                            damping.alpha};
+  const RayleighModes modes{std::clamp(k0.smallest.value_or(0), 0.0, k_max), k_max, damping.d0, damping.alpha,
+                            k0.indefinite ? std::min(k0.lowest.value_or(0), 0.0) : 0};
   const double h_max = critical_step(region, modes);
   limits.status = status_of(h_max);
   limits.h_max = positive(h_max);

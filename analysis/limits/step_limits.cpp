@@ -17,22 +17,26 @@ void check(const RayleighModes& m) {
     if (!(value >= 0 && std::isfinite(value)))
       throw std::invalid_argument("a mode's stiffness or damping is " + std::to_string(value) +
                                   ", expected finite and not negative");
+  if (!(m.k_lowest <= 0 && std::isfinite(m.k_lowest)))
+    throw std::invalid_argument("k_lowest is " + std::to_string(m.k_lowest) +
+                                ", expected finite and not positive");
   if (m.k_min > m.k_max) throw std::invalid_argument("k_min is larger than k_max");
 }
 
-}  // namespace
-
-// Each mode's limit is exact; over the modes it is scanned in log k and every local minimum refined. What
-// depends on k is only the ratio d/√k, which varies slowly in log k, so nothing hides between the samples.
-double critical_step(const StabilityRegion& region, const RayleighModes& modes) {
-  check(modes);
-  const auto limit = [&](double k) { return region.critical_step(k, modes.d0 + modes.alpha * k); };
-  double smallest = std::min(limit(modes.k_min), limit(modes.k_max));
-  if (modes.k_min == modes.k_max || (modes.d0 == 0 && modes.alpha == 0)) return smallest;
+// The smallest limit(k) for k from `from` to `to`, of one sign. Each mode's limit is exact; over the modes it
+// is scanned in log |k| and every local minimum refined. What depends on k is only the ratio d/√|k|, which
+// varies slowly in log |k|, so nothing hides between the samples.
+template <class Limit>
+double smallest_limit(const Limit& limit_of, double from, double to, bool damped) {
+  const double sign = to < 0 || from < 0 ? -1 : 1;
+  const auto limit = [&](double size) { return limit_of(sign * size); };
+  const double least = std::min(std::abs(from), std::abs(to)), most = std::max(std::abs(from), std::abs(to));
+  double smallest = std::min(limit(least), limit(most));
+  if (least == most || !damped) return smallest;
 
   constexpr int samples = 240;
-  const double top = std::log(modes.k_max);
-  const double bottom = std::log(std::max(modes.k_min, 1e-16 * modes.k_max));
+  const double top = std::log(most);
+  const double bottom = std::log(std::max(least, 1e-16 * most));
   const auto log_limit = [&](double log_k) { return limit(std::exp(log_k)); };
   std::vector<double> at, value;
   for (int i = 0; i <= samples; ++i) {
@@ -44,6 +48,20 @@ double critical_step(const StabilityRegion& region, const RayleighModes& modes) 
     if (value[i] < value[i - 1] && value[i] < value[i + 1] && value[i] < 1.1 * smallest)
       smallest = std::min(smallest, minimum_near(log_limit, at[i - 1], at[i], at[i + 1]));
   return smallest;
+}
+
+}  // namespace
+
+double critical_step(const StabilityRegion& region, const RayleighModes& modes) {
+  check(modes);
+  const auto damping = [&](double k) { return modes.d0 + modes.alpha * k; };
+  const bool damped = modes.d0 > 0 || modes.alpha > 0;
+  const double h = smallest_limit([&](double k) { return region.critical_step(k, damping(k)); }, modes.k_min,
+                                  modes.k_max, damped);
+  if (modes.k_lowest == 0) return h;
+  return std::min(h,
+                  smallest_limit([&](double k) { return region.critical_step_beside_growth(k, damping(k)); },
+                                 modes.k_lowest, 1e-16 * modes.k_lowest, damped));
 }
 
 double designed_alpha(const StabilityRegion& region, double h, double d0) {
@@ -81,7 +99,8 @@ DampingDesign design_damping(const StabilityRegion& region, double k_max, double
 double recommended_step(const StabilityRegion& region, const RayleighModes& modes, double safety) {
   if (!(safety >= 1 && std::isfinite(safety)))
     throw std::invalid_argument("the safety factor is " + std::to_string(safety) + ", expected at least 1");
-  RayleighModes stiffer{safety * modes.k_min, safety * modes.k_max, modes.d0, modes.alpha / safety};
+  RayleighModes stiffer{safety * modes.k_min, safety * modes.k_max, modes.d0, modes.alpha / safety,
+                        safety * modes.k_lowest};
   const double damping_fixed = critical_step(region, stiffer);
   stiffer.alpha = modes.alpha;
   const double limit = critical_step(region, modes);

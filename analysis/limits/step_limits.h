@@ -8,16 +8,19 @@
 namespace springstab {
 
 /// Modes with stiffness k in [k_min, k_max] [1/s²] under Rayleigh damping d = d0 + alpha k (paper Eq. 28).
-/// They fill the line X = h d0 + (alpha/h) Y of the X-Y plane (Eq. 29).
+/// They fill the line X = h d0 + (alpha/h) Y of the X-Y plane (Eq. 29). Of an unstable structure there are
+/// also modes with k in [k_lowest, 0), each a motion that grows by itself and one that decays.
 struct RayleighModes {
   double k_min = 0;
   double k_max = 0;
-  double d0 = 0;     // [1/s]
-  double alpha = 0;  // [s]
+  double d0 = 0;        // [1/s]
+  double alpha = 0;     // [s]
+  double k_lowest = 0;  // <= 0; below 0 modes down to there grow [1/s²]
 };
 
-/// The largest H [s] such that at every step 0 < h < H every mode is stable or neutral: 0 where no positive
-/// step is, ∞ where all are. Throws std::invalid_argument for negative or non-finite modes.
+/// The largest H [s] such that at every step 0 < h < H every motion is stable or neutral that does not grow
+/// by itself: 0 where no positive step is, ∞ where all are. Throws std::invalid_argument for negative or
+/// non-finite modes, and for k_lowest > 0.
 double critical_step(const StabilityRegion& region, const RayleighModes& modes);
 
 /// A step and the stiffness-proportional damping fitted to it.

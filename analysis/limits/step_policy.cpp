@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "analysis/limits/transient_growth.h"
+#include "analysis/regions/amplification.h"
 
 namespace springstab {
 namespace {
@@ -18,6 +19,20 @@ constexpr Eigen::Index large = 30000;      // unknowns: from there on it is quic
 constexpr long patience = 20, progress = 10;
 constexpr double hopeless = 1e-6;  // of the first step
 constexpr double most_steps = 1e15;
+
+// How fast a method's steps let these modes grow, which do so by themselves [1/s]. An implicit step is halved
+// where its matrix is not positive definite.
+double growth_of_steps(const Method& method, const std::vector<DampedMode>& modes, double h) {
+  double rate = 0;
+  for (long halved = 0; halved <= (method.info().implicit ? patience : 0); ++halved, h /= 2)
+    for (const DampedMode& mode : modes) {
+      const double x = h * mode.d, y = h * h * mode.k;
+      double radius = 0;
+      spectral_radius(method, {&x, 1}, {&y, 1}, {&radius, 1});
+      if (std::isfinite(radius) && radius > 1) rate = std::max(rate, std::log(radius) / h);
+    }
+  return rate;
+}
 
 }  // namespace
 
@@ -63,9 +78,11 @@ StepChooser::StepChooser(Model& model, StepOptions options)
 StructureLimits StepChooser::limits_at(const State<Vector>& state, double k0_tolerance) const {
   Structure structure = model_.structure(state);
   if (designed_) structure.damping.kind = DampingModel::Kind::designed;
-  return StructureLimits(
-      std::move(structure),
-      {.safety = options_.safety, .certify = false, .seed = options_.seed, .k0_tolerance = k0_tolerance});
+  return StructureLimits(std::move(structure), {.safety = options_.safety,
+                                                .certify = false,
+                                                .seed = options_.seed,
+                                                .k0_tolerance = k0_tolerance,
+                                                .definiteness = model_.is_linear()});
 }
 
 StepChoice StepChooser::choice(StructureLimits limits) const {
@@ -122,8 +139,22 @@ double StepChooser::growth() const {
                           decisions_.h);
 }
 
+bool StepChooser::allow_for_own_growth(const State<Vector>& start, EnergyWatch& watch) const {
+  if (!model_.matrices()) return false;
+  StructureLimits limits = limits_at(start, quick_tolerance);
+  const std::vector<DampedMode> modes = limits.growing_modes();
+  if (modes.empty()) return false;
+  double fastest = 0;
+  for (const DampedMode& mode : modes) fastest = std::max(fastest, mode.mu.real());
+  watch.growth_rate = std::max(fastest, growth_of_steps(options_.method, modes, decisions_.h));
+  const double kappa = std::max(-limits.k0().lowest.value_or(0), 0.0);
+  watch.initial_energy += kappa * 2 * model_.system().kinetic_energy(start.x);
+  return true;
+}
+
 EnergyWatch StepChooser::watch(const State<Vector>& start) {
-  const EnergyWatch watch = model_.energy_watch(start);
+  EnergyWatch watch = model_.energy_watch(start);
+  if (allow_for_own_growth(start, watch)) return watch;  // nothing could save the run, nor needs to
   return options_.step ? watch : tightened(watch, growth());
 }
 

@@ -92,7 +92,8 @@ class StepChooser {
   /// Gives the model the alpha that belongs to the plan's step, where alpha was left to the design.
   void apply(const StepPlan& plan);
 
-  /// Tight where there is a policy to save the run, wide where a fixed step decides.
+  /// Tight where there is a policy to save the run, wide where a fixed step decides. Of an unstable linear
+  /// system it allows for the growth of the motions that grow by themselves, as this method steps them.
   EnergyWatch watch(const State<Vector>& start);
 
   /// For simulate(); refers to this object.
@@ -108,6 +109,7 @@ class StepChooser {
   std::optional<StepPlan> first_plan(const StepChoice& choice, double k0);
   double first_tolerance() const;
   double growth() const;
+  bool allow_for_own_growth(const State<Vector>& start, EnergyWatch& watch) const;
   std::optional<StepPlan> after_divergence(double time, const State<Vector>& state);
 
   Model& model_;

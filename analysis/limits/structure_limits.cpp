@@ -1,5 +1,7 @@
 #include "analysis/limits/structure_limits.h"
 
+#include <cmath>
+
 #include "analysis/limits/transient_growth.h"
 
 namespace springstab {
@@ -11,9 +13,11 @@ StructureLimits::StructureLimits(Structure structure, const StructureLimitsOptio
       k0_(std::move(k0)) {}
 
 const StiffestMode& StructureLimits::k0() {
-  if (!k0_)
-    k0_ = (options_.certify ? stiffest_mode : estimated_stiffest_mode)(
-        structure_->matrices, {.tolerance = options_.k0_tolerance, .seed = options_.seed});
+  if (k0_) return *k0_;
+  const ArpackOptions options{.tolerance = options_.k0_tolerance, .seed = options_.seed};
+  const StructuralMatrices& s = structure_->matrices;
+  k0_ = options_.certify ? stiffest_mode(s, options) : estimated_stiffest_mode(s, options);
+  if (!options_.certify && options_.definiteness) find_lowest(s, options, *k0_);
   return *k0_;
 }
 
@@ -60,8 +64,24 @@ void StructureLimits::add_transient_growth(const Method& method, MethodLimits& l
 }
 
 std::optional<double> StructureLimits::growth() {
-  GeneralDamping* const general = this->general();
-  return general ? general->growth() : std::nullopt;
+  if (GeneralDamping* const general = this->general()) return general->growth();
+  const std::vector<DampedMode> modes = growing_modes();
+  return modes.empty() ? std::nullopt : std::optional(modes.front().mu.real());
+}
+
+// Of d = d0 + alpha k the softest k grows fastest: k = -μ(μ + d0)/(1 + alpha μ) falls with μ.
+std::vector<DampedMode> StructureLimits::growing_modes() {
+  const auto& [matrices, damping, every_pose] = *structure_;
+  if (general() && matrices.symmetric && growth().value_or(0) > 0) {
+    std::vector<DampedMode> modes = damped_modes(matrices).value_or(std::vector<DampedMode>());
+    std::erase_if(modes, [](const DampedMode& mode) { return !(mode.mu.real() > 0); });
+    return modes;
+  }
+  if (general() || damping.kind == DampingModel::Kind::designed || !k0().indefinite || !k0().lowest)
+    return {};
+  const double k = *k0().lowest, d = damping.d0 + damping.alpha * k;
+  const double root = std::hypot(d, 2 * std::sqrt(-k));
+  return {{d > 0 ? -2 * k / (d + root) : (root - d) / 2, d, k}};
 }
 
 }  // namespace springstab

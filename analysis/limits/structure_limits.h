@@ -11,11 +11,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "analysis/limits/general_damping.h"
 #include "analysis/limits/method_limits.h"
 #include "analysis/limits/structure.h"
 #include "analysis/method.h"
+#include "analysis/spectra/generator_spectrum.h"
 
 namespace springstab {
 
@@ -27,6 +29,8 @@ struct StructureLimitsOptions {
   std::uint64_t seed = 1;            // of the start vectors
   double k0_tolerance = 1e-10;       // of k0's residual, relative
   std::optional<double> max_step{};  // recommended where nothing limits the step [s]
+  /// Whether K is indefinite is found out also without `certify`, which costs a factorization.
+  bool definiteness = false;
 };
 
 /// Owns what it needs. Everything is computed when it is first asked for, and kept. Not to be shared between
@@ -43,8 +47,11 @@ class StructureLimits {
   /// All unknown where k0 did not converge.
   const MethodLimits& limits(const Method& method);
   /// How fast the motion itself grows, the largest Re μ [1/s]: 0 where none does; nothing where it was not
-  /// computed, as without damping or with Rayleigh's, or where not all eigenvalues were.
+  /// computed, as of a definite K without damping or with Rayleigh's, or where not all eigenvalues were.
   std::optional<double> growth();
+  /// Modes of a symmetric structure whose motion grows by itself: the fastest where the damping is Rayleigh's
+  /// or none, else all where they were computed.
+  std::vector<DampedMode> growing_modes();
 
  private:
   GeneralDamping* general();  // null where k0 and two numbers decide

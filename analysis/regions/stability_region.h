@@ -95,6 +95,11 @@ class StabilityRegion {
   /// A rigid mode (k = d = 0) never limits h: ∞. Scales exactly: f(s²k, sd) = f(k, d)/s.
   double critical_step(double k, double d) const;
 
+  /// The same for a mode of which the physics lets motions grow, k or d < 0. Where both do (k > 0, or k = 0
+  /// beside a rigid one) nothing limits h: ∞. Where k < 0 one grows and one decays: at each 0 < h < H no more
+  /// than one eigenvalue is outside the unit circle.
+  double critical_step_beside_growth(double k, double d) const;
+
   const RegionConstants& constants() const { return constants_; }
 
   /// Whether the two methods have the same conditions, as a linearized one and the one inside.

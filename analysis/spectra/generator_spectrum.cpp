@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "analysis/regions/stability_region.h"
+#include "analysis/spectra/eigenvalue_refinement.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/linear/dense_solvers.h"
 
@@ -13,7 +14,35 @@ namespace springstab {
 namespace {
 
 constexpr double rigid_rate = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
+constexpr double uncertain = 1e-7;                    // real parts below it, of the largest |μ|, are refined
 constexpr double accurate = 1e-6;
+
+using Modes = std::vector<std::complex<double>>;
+
+// Those of rounding's size beside the others, one of each conjugate pair, and what they are in truth.
+void refine(const StructuralMatrices& s, double rate, Modes& modes) {
+  double largest = 0;
+  for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  const auto in_doubt = [&](std::complex<double> mu) {
+    return std::abs(mu.real()) <= uncertain * largest || std::abs(mu) <= rigid_rate * rate;
+  };
+  if (std::none_of(modes.begin(), modes.end(), in_doubt)) return;
+  const EigenvalueRefinement refinement(s, rate);
+  Modes kept;
+  for (const std::complex<double> mu : modes) {
+    if (!in_doubt(mu)) {
+      kept.push_back(mu);
+    } else if (mu.imag() >= 0) {
+      const RefinedEigenvalue refined = refinement.refine(mu);
+      if (refined.rigid) continue;
+      kept.push_back(refined.value);
+      if (mu.imag() > 0) kept.push_back(std::conj(refined.value));
+    }
+  }
+  modes = std::move(kept);
+}
+
+}  // namespace
 
 // A function of the generator commutes with it; symplectic Euler's matrix does not.
 bool has_stability_function(const Method& method) {
@@ -23,13 +52,7 @@ bool has_stability_function(const Method& method) {
   return (a * c - c * a).norm() <= 1e-12 * a.norm();
 }
 
-/// K', D' and the generator in a time that is dimensionless.
-struct Generator {
-  double rate = 0;  // [1/s]
-  Eigen::MatrixXd stiffness, damping, matrix;
-};
-
-std::optional<Generator> generator_of(const StructuralMatrices& s) {
+std::optional<Generator> dimensionless_generator(const StructuralMatrices& s) {
   const Eigen::Index n = s.size();
   if (n > generator_limit) return std::nullopt;
   Generator g;
@@ -52,21 +75,19 @@ std::optional<Generator> generator_of(const StructuralMatrices& s) {
   return g;
 }
 
-}  // namespace
-
 std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s) {
-  const std::optional<Generator> generator = generator_of(s);
+  const std::optional<Generator> generator = dimensionless_generator(s);
   if (!generator) return std::nullopt;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix, false);
   if (solver.info() != Eigen::Success) return std::nullopt;
   std::vector<std::complex<double>> modes;
-  for (const std::complex<double> mu : solver.eigenvalues())
-    if (std::abs(mu) > rigid_rate) modes.push_back(generator->rate * mu);
+  for (const std::complex<double> mu : solver.eigenvalues()) modes.push_back(generator->rate * mu);
+  refine(s, generator->rate, modes);
   return modes;
 }
 
 std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s) {
-  const std::optional<Generator> generator = generator_of(s);
+  const std::optional<Generator> generator = dimensionless_generator(s);
   if (!generator) return std::nullopt;
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix);
   if (solver.info() != Eigen::Success) return std::nullopt;
@@ -84,10 +105,8 @@ std::optional<std::vector<DampedMode>> damped_modes(const StructuralMatrices& s)
 }
 
 double growth_rate(const std::vector<std::complex<double>>& modes) {
-  double largest = 0, growth = 0;
-  for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
-  for (const std::complex<double> mu : modes)
-    if (mu.real() > undamped * largest) growth = std::max(growth, mu.real());
+  double growth = 0;
+  for (const std::complex<double> mu : modes) growth = std::max(growth, mu.real());
   return growth;
 }
 
@@ -130,7 +149,8 @@ std::optional<double> critical_step(const Method& method, const std::vector<std:
   if (!has_stability_function(method)) return std::nullopt;
   const StabilityRegion& region = stability_region(method);
   double h = std::numeric_limits<double>::infinity();
-  for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  if (largest > 0)
+    for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
   for (const std::complex<double> mu : modes) {
     // A real μ stands for the mode with the double root μ.
     const bool no_damping = std::abs(mu.real()) <= undamped * largest;

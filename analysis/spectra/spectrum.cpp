@@ -190,6 +190,27 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
   return mode;
 }
 
+void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, StiffestMode& mode) {
+  if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return;
+  mode.indefinite = !is_semidefinite(s.stiffness, s.mass);
+  if (!mode.indefinite) return;
+  mode.lowest = mode.smallest;
+  if (mode.lowest) return;
+  const LinearOperator k = scaled_stiffness(s);
+  const LinearOperator negative{k.size,
+                                [&k](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+                                  k.apply(in, out);
+                                  out = -out;
+                                },
+                                -k.highest, -k.lowest};
+  constexpr int patience = 300;  // restarts: a soft end among many is not worth more
+  ArpackOptions few = options;
+  few.max_restarts = std::min(few.max_restarts, patience);
+  const SymmetricEigenpairs pairs = largest_eigenpair(negative, few);
+  mode.products += pairs.products;
+  if (pairs.converged) mode.lowest = -pairs.values[0];
+}
+
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
   StiffestMode mode = estimated_stiffest_mode(s, options);
   if (is_diagonal(s.mass)) {
@@ -199,7 +220,7 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   }
   if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return mode;
 
-  mode.indefinite = !is_semidefinite(s.stiffness, s.mass);
+  find_lowest(s, options, mode);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;
   double gap = std::max(mode.residual, 1e-10 * scale);

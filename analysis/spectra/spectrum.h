@@ -33,6 +33,7 @@ struct StiffestMode {
   long products = 0;               // with S; 0 when solved densely
   std::optional<double> smallest;  // k_min where the whole spectrum was computed [1/s²]
   bool indefinite = false;         // some eigenvalue is below -1e-9 k0: the structure itself is unstable
+  std::optional<double> lowest;  // where K is indefinite: its smallest eigenvalue, if that converged [1/s²]
 };
 
 /// Up to as many unknowns eigenvalues are computed densely.
@@ -57,6 +58,9 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
 
 /// The same without a proof, which costs more than k0 itself: the bound is ∞, definiteness is not tested.
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
+
+/// Tests definiteness, of a symmetric K up to 150 000 unknowns: sets `indefinite` and `lowest`.
+void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, StiffestMode& mode);
 
 /// Whether a Cholesky factorization proves that every eigenvalue of K' is below sigma.
 bool is_below(const StructuralMatrices& s, double sigma);

@@ -408,7 +408,7 @@ BOOST_AUTO_TEST_CASE(the_decaying_motion_of_a_mode_that_grows_counts) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> decades(-3, 3), uniform(-1, 1);
   for (const Method& method : all_methods()) {
-    const StabilityRegion& region = stability_region(method);
+    const StabilityRegion& region = springstab::stability_region(method);
     const auto outside = [&](double k, double d, double h) {
       const Eigen::MatrixXd a = method.amplification(h * d, h * h * k);
       const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(a, false).eigenvalues();

@@ -94,10 +94,22 @@ EigenvalueRefinement::EigenvalueRefinement(const StructuralMatrices& s, double r
   if (s.has_damping()) damping_ = scaled(s.damping, root) / rate_;
 }
 
+// Beside its own terms; or, as of flat cloth that moves out of its plane, whose entries of K are themselves
+// rounding, beside the whole matrices, if D does not resist it either.
+bool EigenvalueRefinement::is_rigid(std::complex<double> mu, const Eigen::VectorXcd& x,
+                                    const Eigen::VectorXcd& y) const {
+  const double round_off = 4 * unit_roundoff * static_cast<double>(x.size());
+  if (std::abs((y.transpose() * stiffness_ * x).value()) <= round_off * sum_of_terms(stiffness_, y, x) &&
+      (stiffness_ * x).norm() <= round_off * (stiffness_.cwiseAbs() * x.cwiseAbs()).norm())
+    return true;
+  return std::norm(mu) <= 2 * round_off * stiffness_.norm() &&
+         (damping_ * x).norm() <= 2 * round_off * damping_.norm() * x.norm();
+}
+
 RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const {
   const Eigen::Index n = mass_.rows();
   const double round_off = 4 * unit_roundoff * static_cast<double>(n);
-  std::complex<double> mu = start / rate_;
+  std::complex<double> mu = start == 0.0 ? round_off : start / rate_;  // P(0) may have no inverse
   ComplexVector x = ComplexVector::Ones(n), y = x;
   for (int i = 0; i < most_iterations; ++i) {
     const Eigen::MatrixXcd p = mu * mu * mass_ + mu * damping_ + stiffness_;
@@ -108,9 +120,7 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
       y = symmetric_ ? x : factor.transpose().solve(slope.transpose() * y).eval().normalized();
     }
     if (!x.allFinite() || !y.allFinite()) break;
-    if (std::abs((y.transpose() * stiffness_ * x).value()) <= round_off * sum_of_terms(stiffness_, y, x) &&
-        (stiffness_ * x).norm() <= round_off * (stiffness_.cwiseAbs() * x.cwiseAbs()).norm())
-      return {0, true};
+    if (is_rigid(mu, x, y)) return {0, true};
     const std::complex<double> by = (y.transpose() * slope * x).value();
     const std::complex<double> change =
         -(y.transpose() * residual(mass_, damping_, stiffness_, mu, x)).value() / by;

@@ -11,7 +11,7 @@ namespace springstab {
 
 struct RefinedEigenvalue {
   std::complex<double> value;  // its real part 0 where that is rounding's, or did not settle [1/s]
-  bool rigid = false;          // K x is nothing but rounding
+  bool rigid = false;          // nothing but rounding resists it
 };
 
 class EigenvalueRefinement {
@@ -24,6 +24,8 @@ class EigenvalueRefinement {
   RefinedEigenvalue refine(std::complex<double> mu) const;
 
  private:
+  bool is_rigid(std::complex<double> mu, const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) const;
+
   double rate_;
   bool symmetric_;
   Eigen::MatrixXd mass_, damping_, stiffness_;  // scaled by powers of two, so exactly

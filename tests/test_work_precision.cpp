@@ -10,6 +10,8 @@
 #include "analysis/errors/linear_motion.h"
 #include "analysis/gsl/adaptive_integrator.h"
 #include "analysis/method.h"
+#include "experiments/inputs/scene_description.h"
+#include "experiments/inputs/subject.h"
 #include "experiments/studies/precision/contest.h"
 #include "experiments/studies/precision/contest_figure.h"
 #include "experiments/studies/precision/long_runs.h"

@@ -160,7 +160,10 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   std::optional<Recorder> recorder;
   const StopOnInterrupt interrupt;
   const Course course = run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder);
-  if (course.diverged()) recorder->record_last();
+  if (course.diverged() && options.keep_diverged) {
+    checkpoint.finish();  // frames get other numbers: nothing can go on from it
+    recorder->record_last();
+  }
   if (!course.stopped) recorder->flush();  // a full disk shows before the report
 
   if (common.json) {

@@ -15,12 +15,14 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <optional>
 #include <random>
 #include <set>
 #include <sstream>
 #include <thread>
 
 #include "experiments/runs/journal.h"
+#include "experiments/runs/recorder.h"
 #include "solvers/io/input_error.h"
 #include "tests/results.h"
 #include "tests/scratch.h"
@@ -429,6 +431,44 @@ BOOST_AUTO_TEST_CASE(a_journal_computes_what_it_lacks_and_nothing_else) {
   BOOST_TEST(journal.has_next(3));
   journal.finish();
   BOOST_TEST(!fs::exists(file));
+}
+
+// A run of matrices that diverges 5 steps after it was left and gone on with.
+BOOST_AUTO_TEST_CASE(the_last_steps_before_a_divergence_are_the_same_after_an_interruption) {
+  write(path() / "k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 100\n2 2 50\n");
+  const auto rows = [&](bool interrupted) {
+    SimulateOptions options;
+    options.input.stiffness = path() / "k.mtx";
+    options.duration = 100;
+    options.frames = 4;
+    options.keep_diverged = true;
+    options.output = path() / (interrupted ? "left" : "whole");
+    make_folder(options.output);
+    Subject subject(options.input);
+    std::optional<Recorder> recorder(std::in_place, subject, options, Json());
+    for (int step = 0; step < 60; ++step) {
+      State<Vector> state;
+      state.x = Eigen::Vector2d(1. / (1 + step), 2 + step);
+      state.v = Eigen::Vector2d(0.5, -step);
+      recorder->record(step, state);
+      if (!interrupted || step != 54) continue;
+      const Json kept = Json::parse(recorder->kept().dump());
+      recorder.reset();
+      recorder.emplace(subject, options, kept);
+    }
+    recorder->record_last();
+    BOOST_TEST(recorder->last_steps() == 32);
+    recorder->finish();
+    return content_of(fs::path(options.output) / "trajectory.csv");
+  };
+  const std::string whole = rows(false);
+  BOOST_TEST(std::count(whole.begin(), whole.end(), '\n') == 1 + 2 + 32);  // at 0 and 25; 28 to 59
+  std::vector<double> times;
+  std::istringstream in(whole.substr(whole.find('\n') + 1));
+  for (std::string row; std::getline(in, row);) times.push_back(std::stod(row));
+  BOOST_TEST((times[0] == 0 && times[1] == 25));
+  for (std::size_t i = 2; i < times.size(); ++i) BOOST_TEST(times[i] == 26. + static_cast<double>(i));
+  BOOST_TEST((whole == rows(true)));
 }
 
 BOOST_AUTO_TEST_CASE(what_a_killed_process_left_aside_is_removed_and_nothing_else) {

@@ -111,6 +111,14 @@ OutputFile::OutputFile(const std::string& path, std::uintmax_t bytes)
   stream_.precision(17);
 }
 
+void OutputFile::cut(std::uintmax_t bytes) {
+  keep();
+  std::error_code error;
+  std::filesystem::resize_file(aside_, bytes, error);
+  stream_.seekp(static_cast<std::streamoff>(bytes));
+  if (error || !stream_) throw InputError(path_, 0, cannot_be_written());
+}
+
 std::uintmax_t OutputFile::keep_on_disk() {
   const std::uintmax_t bytes = keep();
   sync_file(aside_);

@@ -52,6 +52,8 @@ class OutputFile {
   std::uintmax_t keep();
   /// keep(), and waits until the disk has it.
   std::uintmax_t keep_on_disk();
+  /// Takes back what was written after the first `bytes`. Throws likewise.
+  void cut(std::uintmax_t bytes);
   /// Throws InputError if anything could not be written.
   void commit();
   /// The same, and waits until the disk has the file, and its folder the name.

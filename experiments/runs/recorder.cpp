@@ -32,7 +32,7 @@ Fnv1a hash_of_file(const std::string& path) {
 Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json& kept)
     : subject_(subject), options_(options) {
   if (!kept.is_null()) {
-    for (const Json& frame : kept.at("frames")) frames_.push_back({frame[0], frame[1]});
+    for (const Json& frame : kept.at("frames")) frames_.push_back({frame[0], frame[1], frame[2]});
     due_ = kept.at("due");
     most_ = kept.at("most");
     for (int frame = 0; subject.scene() && frame < written(); ++frame)
@@ -43,7 +43,8 @@ Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json&
   }
   if (options.output.empty() || subject.scene()) return;
   const std::string path = options.output + "/trajectory.csv";
-  csv_.emplace(path, kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>());
+  csv_bytes_ = kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>();
+  csv_.emplace(path, csv_bytes_);
   if (!kept.is_null()) {
     csv_hash_ = hash_of_file(OutputFile::kept_path(path));
     if (csv_hash_.hex() != kept.at("csv_hash"))
@@ -59,6 +60,7 @@ void Recorder::write_row(const std::string& row) {
   csv_->stream() << row << '\n';
   csv_hash_.add(row);
   csv_hash_.add("\n");
+  csv_bytes_ += row.size() + 1;
 }
 
 void Recorder::record(double t, const State<Vector>& state) {
@@ -88,14 +90,17 @@ void Recorder::remember(double t, const State<Vector>& state) {
 }
 
 void Recorder::record_last() {
-  for (const Moment& moment : last_) {
-    if (!frames_.empty() && moment.t <= frames_.back().t) continue;
-    write(moment.t, moment.state);
-    ++last_steps_;
-  }
+  if (last_.empty()) return;
+  std::uintmax_t end = csv_bytes_;
+  for (; !frames_.empty() && frames_.back().t >= last_.front().t; frames_.pop_back())
+    end = frames_.back().begin;
+  if (csv_) csv_->cut(end);
+  for (const auto& [t, state] : last_) write(t, state);
+  last_steps_ = static_cast<int>(last_.size());
 }
 
 void Recorder::write(double t, const State<Vector>& state) {
+  const std::uintmax_t begin = csv_bytes_;
   if (subject_.scene()) {
     write_frame(options_.output, options_.format, written(), subject_.vertices(state.x), subject_.faces());
   } else {
@@ -104,7 +109,7 @@ void Recorder::write(double t, const State<Vector>& state) {
     for (double x : state.x) row += text(",%.17g", x);
     write_row(row);
   }
-  frames_.push_back({t, due_});
+  frames_.push_back({t, due_, begin});
   most_ = std::max(most_, written());
 }
 
@@ -114,7 +119,7 @@ void Recorder::flush() {
 
 Json Recorder::kept() {
   Json frames = Json::array();
-  for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due});
+  for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due, frame.begin});
   Json kept{{"frames", frames}, {"due", due_}, {"most", most_}};
   if (csv_) kept.update({{"csv_bytes", csv_->keep_on_disk()}, {"csv_hash", csv_hash_.hex()}});
   for (; subject_.scene() && on_disk_ < written(); ++on_disk_)

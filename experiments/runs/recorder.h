@@ -1,6 +1,7 @@
 // What a run of `simulate` writes as it goes: frames of a scene, or rows of a CSV file for matrices.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
@@ -21,7 +22,8 @@ class Recorder {
 
   /// What lies after t is taken back first: a divergence was undone.
   void record(double t, const State<Vector>& state);
-  /// With --keep-diverged, for a run that has diverged: what it saw last, each step, up to 32 of them.
+  /// With --keep-diverged, at the end of a run that has diverged: what it saw last, each step, up to 32 of
+  /// them, in place of the frames of that time.
   void record_last();
   int last_steps() const { return last_steps_; }
 
@@ -48,9 +50,11 @@ class Recorder {
   const SimulateOptions& options_;
   std::optional<OutputFile> csv_;
   Fnv1a csv_hash_;  // of all that is in it
+  std::uintmax_t csv_bytes_ = 0;
   struct Frame {
     double t;  // [s]
     int due;
+    std::uintmax_t begin;  // of its row in the CSV file [bytes]
   };
   std::vector<Frame> frames_;
   int due_ = 0, most_ = 0;

@@ -157,9 +157,7 @@ void memory(benchmark::State& state, Cloth (*make)(Grid), const char* method) {
   }
 }
 
-SpringNet net(Grid grid) {
-  return make_net(grid, {.particle_mass = 1.25e-4, .stiffness = {200, 100, 20}});
-}
+SpringNet net(Grid grid) { return make_net(grid, {.particle_mass = 1.25e-4, .stiffness = {200, 100, 20}}); }
 
 TriangleCloth cloth(Grid grid) {
   grid.diagonals = Diagonals::alternating;

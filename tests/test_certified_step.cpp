@@ -64,21 +64,40 @@ double symplectic_truth(const StructuralMatrices& s) {
                  .tail<1>()[0];
 }
 
-/// Every eigenvalue of the generator in turn; those at rounding level are rigid motions.
-double dense_truth(const StructuralMatrices& s, std::string_view method) {
+using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// The generator's eigenvalues over √‖K'‖ [1/s], of matrices with a diagonal mass.
+Eigen::Matrix<std::complex<long double>, Eigen::Dynamic, 1> long_eigenvalues(const StructuralMatrices& s,
+                                                                             long double& rate) {
   const Eigen::Index n = s.size();
-  const Eigen::MatrixXd k = mass_scaled_dense(s.stiffness, s), d = mass_scaled_dense(s.damping, s);
-  const double rate = std::sqrt(k.norm());
-  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  const Eigen::Matrix<long double, Eigen::Dynamic, 1> root =
+      Eigen::MatrixXd(s.mass).diagonal().cast<long double>().cwiseSqrt().cwiseInverse();
+  const auto mass_scaled_long = [&](const SparseMatrix& a) {
+    return Long(root.asDiagonal() * Eigen::MatrixXd(a).cast<long double>() * root.asDiagonal());
+  };
+  const Long k = mass_scaled_long(s.stiffness);
+  rate = std::sqrt(k.norm());
+  Long generator = Long::Zero(2 * n, 2 * n);
   generator.topRightCorner(n, n).setIdentity();
   generator.bottomLeftCorner(n, n) = -k / (rate * rate);
-  generator.bottomRightCorner(n, n) = -d / rate;
+  generator.bottomRightCorner(n, n) = -mass_scaled_long(s.damping) / rate;
+  return Eigen::EigenSolver<Long>(generator, false).eigenvalues();
+}
+
+/// Every eigenvalue of the generator in turn; those at rounding level are rigid motions. `known`: long
+/// doubles tell each real part from rounding.
+double dense_truth(const StructuralMatrices& s, std::string_view method, bool* known = nullptr) {
+  long double rate = 0;
   double h = infinity;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator, false);
-  for (const std::complex<double> mu : solver.eigenvalues())
-    if (std::abs(mu) > 1e-6)
-      h = std::min(h, stability_region(method).critical_step(std::norm(mu), std::max(0.0, -2 * mu.real())));
-  return h / rate;
+  if (known) *known = true;
+  for (const std::complex<long double> mu : long_eigenvalues(s, rate))
+    if (std::abs(mu) > 1e-6) {
+      const double d = static_cast<double>(-2 * mu.real());
+      if (known && !(d > 1e-12)) *known = false;
+      h = std::min(
+          h, stability_region(method).critical_step(static_cast<double>(std::norm(mu)), std::max(0.0, d)));
+    }
+  return h / static_cast<double>(rate);
 }
 
 std::optional<double> by_polygons(const StructuralMatrices& s, std::string_view method) {
@@ -103,11 +122,12 @@ std::vector<double> certified_shares(const Certify& certify, std::string_view me
   std::vector<double> shares;
   for (int i = 0; i < count; ++i) BOOST_TEST_CONTEXT(method << ", net " << i) {
       const StructuralMatrices s = make(random);
-      const double truth = dense_truth(s, method);
+      bool known = false;
+      const double truth = dense_truth(s, method, &known);
       const double certified = certify(s, method).value_or(0);
       BOOST_TEST(certified <= truth);
-      if (const auto estimate = critical_step(method, generator_spectrum(s).value()))
-        BOOST_TEST(*estimate == truth, tolerance(1e-5));
+      const auto estimate = critical_step(method, generator_spectrum(s).value());
+      if (known || method == "rk4") BOOST_TEST(estimate.value() == truth, tolerance(1e-5));
       if (certified > 0) BOOST_TEST(largest_modulus(transition_matrix(s, method, certified)) <= 1 + 1e-6);
       shares.push_back(truth > 0 ? certified / truth : 1);
     }
@@ -483,7 +503,8 @@ BOOST_AUTO_TEST_CASE(certified_steps_are_sharp_where_dampers_resist_what_springs
   BOOST_TEST(rk4[100] >= 0.98);
 }
 
-// Where every mode loses 1e-10 of its size in a step, which rounding does not hide, nearly the largest step
+// Where every mode loses 1e-10 of its size in a step, which rounding does not hide beside 1e-9 of the fastest
+// rate, nearly the largest step
 // is proved.
 BOOST_AUTO_TEST_CASE(a_lyapunov_matrix_proves_what_polygons_do_not) {
   for (const std::string_view method : {"explicit-euler", "rk2", "rk4"}) {
@@ -492,9 +513,12 @@ BOOST_AUTO_TEST_CASE(a_lyapunov_matrix_proves_what_polygons_do_not) {
       while (true) {
         StructuralMatrices s = matrices(random.net(i++ % 2 == 0));
         const std::vector<std::complex<double>> modes = generator_spectrum(s).value();
-        double decay = infinity;
-        for (const std::complex<double> mu : modes) decay = std::min(decay, -mu.real());
-        if (decay * critical_step(method, modes).value_or(0) > 1e-10) return s;
+        double decay = infinity, largest = 0;
+        for (const std::complex<double> mu : modes) {
+          decay = std::min(decay, -mu.real());
+          largest = std::max(largest, std::abs(mu));
+        }
+        if (decay > 1e-9 * largest && decay * critical_step(method, modes).value_or(0) > 1e-10) return s;
       }
     };
     const std::vector<double> shares = certified_shares(by_any_proof, method, 7, 200, any);
@@ -975,7 +999,6 @@ BOOST_AUTO_TEST_CASE(symplectic_euler_has_a_limit_with_negative_damping) {
 // Masses over ten decades: the real parts of slow motions are rounding beside the fast ones, and decide for
 // explicit Euler and RK2. Long doubles know them.
 BOOST_AUTO_TEST_CASE(real_parts_are_known_to_their_own_scale) {
-  using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   RandomNets random(43);
   for (int i = 0; i < 40; ++i) BOOST_TEST_CONTEXT("system " << i) {
       const Eigen::Index n = 3 + i % 6;
@@ -990,22 +1013,12 @@ BOOST_AUTO_TEST_CASE(real_parts_are_known_to_their_own_scale) {
         return Eigen::MatrixXd((b + b.transpose()) / 2);
       };
       const Eigen::MatrixXd k = definite(100), d = definite(random.log_uniform(-4, -1));
-      Long generator = Long::Zero(2 * n, 2 * n);
-      for (Eigen::Index a = 0; a < n; ++a) {
-        generator(a, n + a) = 1;
-        for (Eigen::Index b = 0; b < n; ++b) {
-          const long double root =
-              std::sqrt(static_cast<long double>(mass[a])) * std::sqrt(static_cast<long double>(mass[b]));
-          generator(n + a, b) = -k(a, b) / root;
-          generator(n + a, n + b) = -d(a, b) / root;
-        }
-      }
-      const auto truth = Eigen::EigenSolver<Long>(generator, false).eigenvalues().eval();
-      double expected = infinity;
-      for (const std::complex<long double> mu : truth)
-        expected = std::min(expected, static_cast<double>(-2 * mu.real() / std::norm(mu)));
       const StructuralMatrices s =
           prepare(k.sparseView(0.0, 0.0), SparseMatrix(mass.asDiagonal()), d.sparseView(0.0, 0.0));
+      long double rate = 0;
+      double expected = infinity;
+      for (const std::complex<long double> mu : long_eigenvalues(s, rate))
+        expected = std::min(expected, static_cast<double>(-2 * mu.real() / std::norm(mu) / rate));
       const auto modes = generator_spectrum(s).value();
       BOOST_TEST(modes.size() == static_cast<std::size_t>(2 * n));
       BOOST_TEST(critical_step("explicit-euler", modes).value() == expected, tolerance(1e-6));

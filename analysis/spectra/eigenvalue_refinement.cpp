@@ -13,6 +13,7 @@ using ComplexVector = Eigen::VectorXcd;
 
 constexpr int most_iterations = 12;
 constexpr double settled = 1e-12;
+constexpr double beside_it = 1 + 1e-12;  // where P(μ) has an inverse
 
 /// An unevaluated sum of two doubles: twice the precision (Dekker 1971, Knuth's sum).
 struct Twice {
@@ -112,7 +113,8 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
   std::complex<double> mu = start == 0.0 ? round_off : start / rate_;  // P(0) may have no inverse
   ComplexVector x = ComplexVector::Ones(n), y = x;
   for (int i = 0; i < most_iterations; ++i) {
-    const Eigen::MatrixXcd p = mu * mu * mass_ + mu * damping_ + stiffness_;
+    const std::complex<double> shift = beside_it * mu;
+    const Eigen::MatrixXcd p = shift * shift * mass_ + shift * damping_ + stiffness_;
     const Eigen::MatrixXcd slope = 2.0 * mu * mass_ + damping_;
     const Eigen::PartialPivLU<Eigen::MatrixXcd> factor(p);
     for (int again = 0; again < (i == 0 ? 3 : 1); ++again) {

@@ -28,7 +28,8 @@ namespace springstab {
 /// Cheap to copy, and safe to share between threads.
 class Method {
  public:
-  /// The built-in method of that name; throws std::invalid_argument that lists the known names.
+  /// The built-in method of that name, which may have parameters: "newmark:beta=0.25,gamma=0.5". Equal texts
+  /// give copies of one value. Throws std::invalid_argument that lists the known names or parameters.
   Method(std::string_view name);
   Method(const std::string& name) : Method(std::string_view(name)) {}
   Method(const char* name) : Method(std::string_view(name)) {}
@@ -128,7 +129,9 @@ Method make_method(Description description) {
   return Method(std::make_shared<Method::Described<Description>>(std::move(description)));
 }
 
-/// The methods built in, in the order of the list.
+/// The methods that tables and figures show where none is named, in the order of the list.
 const std::vector<Method>& all_methods();
+/// The others that are built in, with the parameters they have where none are given.
+const std::vector<Method>& more_methods();
 
 }  // namespace springstab

@@ -1,23 +1,51 @@
 // What is asked of the region as a whole: its highest point, how far it reaches along the axes, and the best
 // line for Rayleigh damping.
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "analysis/constants.h"
 #include "analysis/gsl/numerics.h"
 #include "analysis/regions/region_pieces.h"
 #include "analysis/regions/stability_region.h"
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
+namespace {
 
-bool StabilityRegion::powers_bounded_at(double x, double y) const {
-  Eigen::Matrix2d a;
-  a << amplification_[0](x, y), amplification_[1](x, y), amplification_[2](x, y), amplification_[3](x, y);
+constexpr double coincidence = 1e-5;  // the apex is known to about 1e-12, a double eigenvalue to its root
+
+bool powers_bounded_2x2(const Eigen::MatrixXd& a) {
   const double mean = a.trace() / 2, half = (a(0, 0) - a(1, 1)) / 2;
   const double separation = std::sqrt(std::abs(half * half + a(0, 1) * a(1, 0)));  // |λ₁ - λ₂| / 2
-  const bool double_root = separation < 1e-5;  // the apex is known to about 1e-12
-  return !double_root || (a - mean * Eigen::Matrix2d::Identity()).norm() < 1e-5;
+  return separation >= coincidence || (a - mean * Eigen::Matrix2d::Identity()).norm() < coincidence;
+}
+
+// Of eigenvalues on the unit circle: those that coincide must have as many eigenvectors.
+bool powers_bounded(const Eigen::MatrixXd& a) {
+  if (a.rows() == 2) return powers_bounded_2x2(a);
+  const Eigen::VectorXcd lambda = a.eigenvalues();
+  for (const std::complex<double> at : lambda) {
+    if (std::abs(at) < 1 - 1e-4) continue;
+    const auto close = [&](std::complex<double> other) { return std::abs(other - at) < 10 * coincidence; };
+    const auto multiplicity = std::count_if(lambda.begin(), lambda.end(), close);
+    const Eigen::MatrixXcd rest = a - at * Eigen::MatrixXcd::Identity(a.rows(), a.rows());
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXcd>(rest).singularValues();
+    if ((values.array() < 100 * coincidence).count() < multiplicity) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool StabilityRegion::powers_bounded_at(double x, double y) const {
+  const auto m = static_cast<Eigen::Index>(std::lround(std::sqrt(amplification_.size())));
+  Eigen::MatrixXd a(m, m);
+  for (Eigen::Index i = 0; i < a.size(); ++i)
+    a(i / m, i % m) = amplification_[static_cast<std::size_t>(i)](x, y);
+  return powers_bounded(a);
 }
 
 RegionConstants StabilityRegion::find_constants() const {

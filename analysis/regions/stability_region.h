@@ -1,13 +1,11 @@
 // The stable region of a method in the X-Y plane, X = hd and Y = h²k, and its exact boundary.
 //
-// A 2x2 matrix with trace T and determinant Δ has both eigenvalues inside the unit disk iff Jury's three
-// inequalities hold (Jury 1964; for real coefficients):
-//     1 - Δ > 0   (equality: a complex pair on the unit circle, or λ₁λ₂ = 1),
-//     1 - T + Δ > 0   (equality: λ = 1),
-//     1 + T + Δ > 0   (equality: λ = -1).
-// T and Δ are the rational functions that the method's own step gives. Along any polynomial curve
-// (X(t), Y(t)) the three are rational in t, so where they change sign is a polynomial root problem:
-// columns, damping lines and the path of one mode as h grows are all such curves. No raster is involved.
+// Three conditions on the matrix A(X, Y) that the method's own step gives say where stability may end
+// (characteristic.h): a complex pair on the unit circle, λ = 1, λ = -1. Along any polynomial curve
+// (X(t), Y(t)) they are rational in t, so where they vanish is a polynomial root problem: columns, damping
+// lines and the path of one mode as h grows are all such curves. No raster is involved. Between two roots
+// the signs of the three decide for the 2x2 matrix of a method that carries nothing, else the eigenvalues
+// at one point do. (A method with eigenvalues that are 0, 1 or -1 for all X and Y is judged by the others.)
 #pragma once
 
 #include <array>
@@ -17,22 +15,17 @@
 #include <vector>
 
 #include "analysis/method.h"
-#include "analysis/regions/polynomial.h"
+#include "analysis/regions/characteristic.h"
 
 namespace springstab {
 
-/// What ends a stable interval: one of Jury's conditions, or the window that was asked for.
+/// What ends a stable interval: one of the three conditions, or the window that was asked for.
 enum class Bound { complex_pair, plus_one, minus_one, window };
 
 /// t in (lower, upper), open; may reach to ±∞.
 struct StableInterval {
   double lower, upper;
   Bound lower_bound, upper_bound;
-};
-
-/// A plane curve t -> (x(t), y(t)).
-struct Curve {
-  Polynomial x, y;
 };
 
 /// Axis-aligned window of the X-Y plane.
@@ -74,12 +67,11 @@ struct DampingLine {
 
 class StabilityRegion {
  public:
-  /// Throws std::invalid_argument for a method that carries more than x and v.
   explicit StabilityRegion(const Method& method);
   StabilityRegion(StabilityRegion&&) noexcept;
   ~StabilityRegion();
 
-  /// Maximal open intervals of t in (t_min, t_max) along which both |λ| < 1, ascending.
+  /// Maximal open intervals of t in (t_min, t_max) along which every |λ| < 1, ascending.
   std::vector<StableInterval> stable_intervals(const Curve& curve, double t_min, double t_max) const;
 
   /// The first t > 0 at which a mode that is stable or neutral just after t = 0 turns unstable:
@@ -97,8 +89,8 @@ class StabilityRegion {
 
   DampingLine damping_line(double x0) const;
 
-  /// Whether every point from (x0, y0) to (x1, y1), ends included, is stable or neutral: Jury's conditions
-  /// hold to 1e-11 at all their extremes between.
+  /// Whether every point from (x0, y0) to (x1, y1), ends included, is stable or neutral: the
+  /// conditions hold to 1e-11 at all their extremes between, or |λ| <= 1 to 1e-10 between all their roots.
   bool closed_segment_is_stable(double x0, double y0, double x1, double y1) const;
 
   /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and 1 + T + Δ >= 0 is a half-plane that is
@@ -134,8 +126,9 @@ class StabilityRegion {
   bool powers_bounded_at(double x, double y) const;
   std::pair<double, double> highest_point(const Piece& piece) const;
 
-  std::vector<RationalFunction> amplification_;  // 2x2, row by row
-  std::array<RationalFunction, 3> jury_;         // indexed by Bound
+  std::vector<RationalFunction> amplification_;  // m x m, row by row
+  CharacteristicPolynomial polynomial_;
+  std::array<RationalFunction, 3> jury_;  // indexed by Bound
   std::vector<Piece> all_pieces_;                // of the whole plane
   RegionConstants constants_;
 };

@@ -44,6 +44,8 @@ class Method {
   std::vector<RationalFunction> symbolic_step() const { return self_->symbolic_step(); }
   /// A at one point. All ∞ at a pole and where the step overflows.
   Eigen::MatrixXd amplification(double x, double y) const { return self_->amplification(x, y); }
+  /// What a run starts from at one point, m x 2: of the starts (x, v) = (1, 0) and (0, 1).
+  Eigen::MatrixXd starts(double x, double y) const { return self_->starts(x, y); }
   /// See spectral_radius and simulate_cells in regions/amplification.h.
   void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const {
     self_->radii(x, y, rho);
@@ -79,6 +81,7 @@ class Method {
     virtual std::unique_ptr<Stepper> stepper() const = 0;
     virtual std::vector<RationalFunction> symbolic_step() const = 0;
     virtual Eigen::MatrixXd amplification(double x, double y) const = 0;
+    virtual Eigen::MatrixXd starts(double x, double y) const = 0;
     virtual void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const = 0;
     virtual void fates(std::span<const double> x, std::span<const double> y, long steps, double threshold,
                        std::span<CellFate> fate) const = 0;
@@ -100,6 +103,7 @@ class Method {
     Eigen::MatrixXd amplification(double x, double y) const override {
       return amplification_at(description, x, y);
     }
+    Eigen::MatrixXd starts(double x, double y) const override { return starts_at(description, x, y); }
     void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const override {
       radii_of(description, x, y, rho);
     }

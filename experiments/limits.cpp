@@ -7,6 +7,7 @@
 
 #include "analysis/structure_limits.h"
 #include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/limits_options.h"
 #include "solvers/io/input_error.h"
@@ -188,7 +189,8 @@ void print(std::string_view method, const MethodLimits& l) {
 void check(const LimitsOptions& options) {
   if (!(options.max_step > 0 && std::isfinite(options.max_step)))
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
-  if (!options.method.empty()) Method{options.method};
+  if (!options.method.empty() && !options.methods.empty())
+    throw InputError("--method, --methods", 0, "are both given, expected one of them");
 }
 
 Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
@@ -241,6 +243,8 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety)
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   check(options);
+  const std::vector<Method> methods =
+      options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
   Subject subject(options.input, true);
   print_mesh_notes(subject);
   Structure structure = subject.structure(subject.initial_state(common.seed));
@@ -250,8 +254,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
 
   std::vector<Row> rows;
   int status = answer.k0().converged ? done : no_answer;
-  for (const Method& method : all_methods()) {
-    if (!options.method.empty() && method.name() != options.method) continue;
+  for (const Method& method : methods) {
     const MethodLimits& limits = answer.limits(method);
     if (!options.method.empty() && !limits.h_max) status = no_answer;
     if (options.certify && !limits.h_certified) status = no_answer;

@@ -16,13 +16,16 @@ constexpr double near_enough = 0.9;  // certified / estimate
 // The positive root of a h d + b h² k = c, without cancellation; ∞ where there is none.
 double root(double a, double b, double c, const ModePoint& p) {
   const double linear = a * std::max(p.d, 0.0), quadratic = b * std::max(p.k, 0.0);
-  return 2 * c / (linear + std::hypot(linear, 2 * std::sqrt(c * quadratic)));
+  const double discriminant = std::hypot(linear, 2 * std::sqrt(c * quadratic));
+  if (linear < 0) return quadratic > 0 ? (discriminant - linear) / (2 * quadratic) : infinity;
+  return 2 * c / (linear + discriminant);
 }
 
 }  // namespace
 
 // Newton's method on λ_max, from above: a unit vector's own root is an upper bound, and the eigenvector at h
-// has the root to second order. The way there needs no accurate eigenvectors.
+// has the root to second order. The way there needs no accurate eigenvectors. With a < 0, too, every vector's
+// steps are those below its one positive root.
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
                                   const Stiffening& stiffening) {
   const auto& [a, b, c] = condition;
@@ -105,6 +108,10 @@ MethodLimits GeneralDamping::compute(const Method& method) {
     return limits;
   }
   if (limits.status != LimitStatus::unknown) return limits;
+  if (stability_region(method).matrix_form() == MatrixForm::none) {
+    limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
+    return limits;
+  }
   if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
     add_exact(*condition, limits);
   } else {

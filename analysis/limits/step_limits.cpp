@@ -53,9 +53,13 @@ double designed_alpha(const StabilityRegion& region, double h, double d0) {
 DampingDesign design_damping(const StabilityRegion& region, double k_max, double d0) {
   check({.k_max = k_max, .d0 = d0});
   const double base_limit = d0 > 0 ? region.constants().real_interval / d0 : infinity;
-  const double apex_limit = k_max > 0 ? std::sqrt(region.constants().y_max / k_max) : infinity;
+  const RegionConstants& c = region.constants();
+  // A region that reaches to ∞ without covering the quadrant: no line is known to reach further than some
+  // times the best one from the origin.
+  const double highest = c.y_max < infinity || c.covers_quadrant ? c.y_max : 4 * region.damping_line(0).reach;
+  const double apex_limit = k_max > 0 ? std::sqrt(highest / k_max) : infinity;
   double upper = std::min(base_limit, apex_limit);
-  if (upper == infinity) return {infinity, 0};
+  if (upper == infinity) return {infinity, k_max > 0 && !c.covers_quadrant ? infinity : 0};
 
   // Largest h whose best line from (h d0, 0) reaches h² k_max; the reach may jump, so all of (0, upper] is
   // scanned.

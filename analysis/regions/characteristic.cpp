@@ -39,7 +39,8 @@ Functions characteristic_of(const Functions& a) {
     for (std::size_t i = 0; i < m; ++i) power[i * m + i] = power[i * m + i] + c[m - k + 1];
     for (std::size_t i = 0; i < m; ++i)
       for (std::size_t j = 0; j < m; ++j)
-        for (std::size_t l = 0; l < m; ++l) next[i * m + j] = next[i * m + j] + a[i * m + l] * power[l * m + j];
+        for (std::size_t l = 0; l < m; ++l)
+          next[i * m + j] = next[i * m + j] + a[i * m + l] * power[l * m + j];
     for (std::size_t i = 0; i < m; ++i) c[m - k] = c[m - k] - next[i * m + i];
     c[m - k] = c[m - k] * (1.0 / static_cast<double>(k));
     power = std::move(next);
@@ -108,7 +109,7 @@ std::vector<Polynomial> along(const Functions& c, const Curve& curve) {
 
 bool is_palindrome(const std::vector<Polynomial>& p) {
   for (std::size_t i = 0; i < p.size() / 2; ++i) {
-    const std::vector<double> &a = p[i].c, &b = p[p.size() - 1 - i].c;
+    const std::vector<double>&a = p[i].c, &b = p[p.size() - 1 - i].c;
     if (a.size() != b.size()) return false;
     for (std::size_t j = 0; j < a.size(); ++j)
       if (std::abs(a[j] - b[j]) > 1e-12 * (std::abs(a[j]) + std::abs(b[j]))) return false;

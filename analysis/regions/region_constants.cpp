@@ -54,15 +54,16 @@ RegionConstants StabilityRegion::find_constants() const {
   found.imaginary_interval = critical_step(1, 0);
   for (const Piece& piece : all_pieces_) {
     const StableInterval& top = piece.inner.intervals.back();
-    if (top.upper == infinity) {
-      found.y_max = infinity;
-      found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
-      break;
-    }
-    const auto [x, y] = highest_point(piece);
+    const auto [x, y] = top.upper == infinity ? std::pair{0.0, infinity} : highest_point(piece);
     if (y > found.y_max) found.y_max = y, found.x_at_y_max = x;
   }
-  if (std::isfinite(found.y_max)) found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
+  if (all_pieces_.empty()) found.y_max = 0;
+  // Unbounded, too, where the top ends at a pole or still rises at the end of the line.
+  const bool at_the_end = std::abs(found.x_at_y_max) >= whole_line().back();
+  if (found.y_max > 1e12 || at_the_end) found.y_max = infinity;
+  if (found.y_max == infinity) found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
+  if (std::isfinite(found.x_at_y_max))
+    found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
   found.covers_quadrant = std::any_of(all_pieces_.begin(), all_pieces_.end(), [](const Piece& piece) {
     const StableInterval& top = piece.inner.intervals.back();
     return piece.left <= 0 && piece.right >= whole_line().back() && top.lower <= 0 && top.upper == infinity;

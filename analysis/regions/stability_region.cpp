@@ -34,7 +34,10 @@ double cosine_point(double left, double right, double angle) {
 }
 
 StabilityRegion::StabilityRegion(const Method& method)
-    : amplification_(method.symbolic_step()), polynomial_(amplification_), jury_(polynomial_.conditions()) {
+    : amplification_(method.symbolic_step()),
+      polynomial_(amplification_),
+      jury_(polynomial_.conditions()),
+      matrix_form_(springstab::matrix_form(method, polynomial_)) {
   all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
   constants_ = find_constants();
 }
@@ -52,8 +55,7 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
   std::vector<StableInterval> found;
   bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const bool stable =
-        cuts[i].t < cuts[i + 1].t && conditions.stable(between(cuts[i].t, cuts[i + 1].t));
+    const bool stable = cuts[i].t < cuts[i + 1].t && conditions.stable(between(cuts[i].t, cuts[i + 1].t));
     if (stable && touching) {
       found.back().upper = cuts[i + 1].t;
       found.back().upper_bound = cuts[i + 1].bound;
@@ -97,23 +99,18 @@ bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
 }
 
 std::optional<HalfPlane> StabilityRegion::exact_condition() const {
-  // Entries affine in X and Y stand for one matrix each, free of the order of products; a row of constants
-  // then eliminates x or v.
-  std::array<std::array<double, 3>, 4> entry;
-  for (std::size_t i = 0; i < entry.size(); ++i) {
-    const auto affine = amplification_[i].affine();
-    if (!affine) return std::nullopt;
-    entry[i] = *affine;
+  if (matrix_form_ != MatrixForm::scalar_coefficients || polynomial_.degree() != 2) return std::nullopt;
+  const auto holds_on_quadrant = [](const std::array<double, 3>& c) {
+    return std::all_of(c.begin(), c.end(), [](double v) { return v >= 0; });
+  };
+  const auto coefficients = affine_coefficients(polynomial_);
+  if (!coefficients || !holds_on_quadrant(coefficients->back())) return std::nullopt;
+  for (const Bound bound : {Bound::complex_pair, Bound::plus_one}) {
+    const auto c = jury_[static_cast<std::size_t>(bound)].numerator().affine();
+    if (!c || !holds_on_quadrant(*c)) return std::nullopt;
   }
-  const auto constant = [&](std::size_t i) { return entry[i][1] == 0 && entry[i][2] == 0; };
-  if (!(constant(0) && constant(1) && entry[1][0] != 0) && !(constant(2) && constant(3) && entry[2][0] != 0))
-    return std::nullopt;
-  for (const Bound bound : {Bound::complex_pair, Bound::plus_one}) {  // these hold on the whole quadrant
-    const auto c = jury_[static_cast<std::size_t>(bound)].affine();
-    if (!c || std::any_of(c->begin(), c->end(), [](double v) { return v < 0; })) return std::nullopt;
-  }
-  const auto c = jury_[static_cast<std::size_t>(Bound::minus_one)].affine();
-  if (!c || !((*c)[0] > 0) || (*c)[1] > 0 || (*c)[2] > 0) return std::nullopt;
+  const auto c = jury_[static_cast<std::size_t>(Bound::minus_one)].numerator().affine();
+  if (!c || !((*c)[0] > 0) || !((*c)[2] < 0)) return std::nullopt;
   return HalfPlane{-(*c)[1], -(*c)[2], (*c)[0]};
 }
 

@@ -16,6 +16,7 @@
 
 #include "analysis/method.h"
 #include "analysis/regions/characteristic.h"
+#include "analysis/regions/matrix_form.h"
 
 namespace springstab {
 
@@ -93,11 +94,14 @@ class StabilityRegion {
   /// conditions hold to 1e-11 at all their extremes between, or |λ| <= 1 to 1e-10 between all their roots.
   bool closed_segment_is_stable(double x0, double y0, double x1, double y1) const;
 
-  /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and 1 + T + Δ >= 0 is a half-plane that is
-  /// exact for matrices: a method of one force a step, whose λ² - Tλ + Δ is affine in hD' and h²K'. Then for
-  /// any symmetric positive semidefinite D', K', which need not commute, the method is stable for
-  /// x hD' + y h²K' < bound and, as λ² - Tλ + Δ has a negative eigenvalue at -1 and none at -∞, unstable
-  /// beyond (theory: symplectic Euler's limit is the root of λ_max(2hD' + h²K') = 4).
+  /// How the method's eigenvalues on matrices follow from this region.
+  MatrixForm matrix_form() const { return matrix_form_; }
+
+  /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and the step has scalar coefficients of
+  /// degree 2, so that its condition is a half-plane. Then for any symmetric positive semidefinite D', K',
+  /// which need not commute, the method is stable for λ_max(x hD' + y h²K') < bound and, as Q(λ) has a
+  /// negative eigenvalue at -1 and none at -∞, unstable beyond (theory: symplectic Euler's limit is the root
+  /// of λ_max(2hD' + h²K') = 4). y > 0; x < 0 where damping lets the step grow.
   std::optional<HalfPlane> exact_condition() const;
 
   /// Area inside the window, to about 12 digits. These four throw std::invalid_argument for an empty window.
@@ -129,7 +133,8 @@ class StabilityRegion {
   std::vector<RationalFunction> amplification_;  // m x m, row by row
   CharacteristicPolynomial polynomial_;
   std::array<RationalFunction, 3> jury_;  // indexed by Bound
-  std::vector<Piece> all_pieces_;                // of the whole plane
+  MatrixForm matrix_form_;
+  std::vector<Piece> all_pieces_;  // of the whole plane
   RegionConstants constants_;
 };
 

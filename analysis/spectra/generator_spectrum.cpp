@@ -15,14 +15,6 @@ namespace {
 constexpr double rigid_rate = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
 constexpr double accurate = 1e-6;
 
-// A function of the generator commutes with it; symplectic Euler's matrix does not.
-bool has_stability_function(const Method& method) {
-  if (method.size() > 2) return false;
-  const double x = 0.3, y = 0.7;
-  const Eigen::Matrix2d a = method.amplification(x, y), c{{0, 1}, {-y, -x}};
-  return (a * c - c * a).norm() <= 1e-12 * a.norm();
-}
-
 /// K', D' and the generator in a time that is dimensionless.
 struct Generator {
   double rate = 0;  // [1/s]
@@ -127,8 +119,8 @@ std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::c
 
 std::optional<double> critical_step(const Method& method, const std::vector<std::complex<double>>& modes,
                                     double largest) {
-  if (!has_stability_function(method)) return std::nullopt;
   const StabilityRegion& region = stability_region(method);
+  if (region.matrix_form() != MatrixForm::stability_function) return std::nullopt;
   double h = std::numeric_limits<double>::infinity();
   for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
   for (const std::complex<double> mu : modes) {

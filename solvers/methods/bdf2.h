@@ -25,7 +25,8 @@ class Bdf2::Steps {
   void start(System& system, double h, State<V>& state) {
     State<V> next{state.x, state.v};
     ImplicitEuler::Steps<V> first;
-    if (first.step(system, h, next) != StepStatus::done) next.x = state.x + h * state.v;  // the step will fail
+    if (first.step(system, h, next) != StepStatus::done)
+      next.x = state.x + h * state.v;  // the step will fail
     state.memory[0] = 2.0 * state.x - next.x;
     state.memory[1] = 2.0 * state.v - next.v;
   }

@@ -1,8 +1,8 @@
 // Diagonally implicit Runge-Kutta methods with one diagonal: the tableau is the method, and its last row is
 // the step (stiffly accurate). Stage i of u' = (v, a(x, v)) sits at
 //     X_i = x + h Σ_{j<=i} a_ij V_j,   V_i = v + h Σ_{j<=i} a_ij f_j,
-// explicit where a_ii = 0. With g = h a_ii each other stage is one Newton step from V_i = V_{i-1} (v where the
-// stage before is the beginning), for Δ = V_i - V_{i-1}:
+// explicit where a_ii = 0. With g = h a_ii each other stage is one Newton step from V_i = V_{i-1} (v where
+// the stage before is the beginning), for Δ = V_i - V_{i-1}:
 //     (1 + gD' + g²K') Δ = v + h Σ_{j<i} a_ij f_j + g a(X, V_{i-1}) - V_{i-1},   X_i = X + gΔ,
 // with D' and K' of the first such stage, so that a step needs one linearization and its matrix stays.
 #pragma once

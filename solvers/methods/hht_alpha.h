@@ -21,9 +21,8 @@ struct HhtAlpha {
   template <class V>
   struct Steps : OneStepAlpha<V> {
     explicit Steps(const HhtAlpha& m)
-        : OneStepAlpha<V>({.force = -m.alpha,
-                           .beta = (1 - m.alpha) * (1 - m.alpha) / 4,
-                           .gamma = 0.5 - m.alpha}) {}
+        : OneStepAlpha<V>(
+              {.force = -m.alpha, .beta = (1 - m.alpha) * (1 - m.alpha) / 4, .gamma = 0.5 - m.alpha}) {}
   };
 };
 

@@ -19,8 +19,9 @@ struct Newmark {
     const std::string rule = given.word("rule", "average-acceleration");
     if (rule == "linear-acceleration") beta = 1. / 6;
     if (rule == "central-difference") beta = 0;
-    given.require(rule == "average-acceleration" || rule == "linear-acceleration" || rule == "central-difference",
-                  "rule=average-acceleration, linear-acceleration or central-difference");
+    given.require(
+        rule == "average-acceleration" || rule == "linear-acceleration" || rule == "central-difference",
+        "rule=average-acceleration, linear-acceleration or central-difference");
     beta = given.number("beta", beta);
     gamma = given.number("gamma", gamma);
     given.require(beta >= 0 && gamma >= 0, "beta and gamma that are not negative");

@@ -38,8 +38,8 @@ class OneStepAlpha {
     v_ = v_ - a - (now_ * h) * change_;
     linear.stiffness_times(a, change_);
     v_ = v_ - (0.5 * now_ * h * h) * change_;
-    const SolveReport solved = linear.solve_shifted(
-        {1 - w_.mass, now_ * w_.gamma * h, now_ * w_.beta * h * h}, v_, change_);
+    const SolveReport solved =
+        linear.solve_shifted({1 - w_.mass, now_ * w_.gamma * h, now_ * w_.beta * h * h}, v_, change_);
     if (solved.status != StepStatus::done) return solved.status;
     x_ = state.x + h * state.v + (0.5 * h * h) * a + (w_.beta * h * h) * change_;
     v_ = state.v + h * a + (w_.gamma * h) * change_;

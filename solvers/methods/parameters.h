@@ -1,8 +1,9 @@
 // What a method is given beside its name, as "newmark:beta=0.25,gamma=0.5" on the command line.
 //
 //     Parameters given("newmark:beta=0.25");
-//     given.number("beta", 0.25), given.number("gamma", 0.5);   // the second is the value where none is given
-//     given.check_all_asked_for();                              // a key that nobody asked for is an error
+//     given.number("beta", 0.25), given.number("gamma", 0.5);   // the second is the value where none is
+//     given given.check_all_asked_for();                              // a key that nobody asked for is an
+//     error
 //
 // Depends on the standard library alone.
 #pragma once

@@ -1,7 +1,8 @@
 // Velocity Verlet with explicit damping, each half kick with the velocity of its own start:
 //     w = v + ½h a(x, v),   x⁺ = x + hw,   v⁺ = w + ½h a(x⁺, w).
-// Two forces a step, of order 2 where they do not depend on v and 1 where they do. Stable for X = hd < 4 and, c = 1 - X/2, Y = h²k < 4(1 + c²)/(1 + c).
-// (The variant that carries a(x⁺, w) into the next step, one force a step, is symplectic Euler.)
+// Two forces a step, of order 2 where they do not depend on v and 1 where they do. Stable for X = hd < 4 and,
+// c = 1 - X/2, Y = h²k < 4(1 + c²)/(1 + c). (The variant that carries a(x⁺, w) into the next step, one force
+// a step, is symplectic Euler.)
 #pragma once
 
 #include "solvers/methods/method_info.h"

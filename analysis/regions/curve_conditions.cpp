@@ -5,6 +5,7 @@
 
 #include "analysis/constants.h"
 #include "analysis/regions/region_pieces.h"
+#include "analysis/regions/sampled_curve.h"
 
 namespace springstab {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 constexpr double cancellation = 1e-14;  // relative to the terms that cancel: a sign below it is not known
 constexpr double neutrality =
     1e-12;  // a condition violated by less, relative to its terms, counts as neutral
-constexpr double known_radius = 1e-12, neutral_radius = 1e-10;  // the same of a computed |λ|
 
 constexpr std::array<Bound, 3> bounds{Bound::complex_pair, Bound::plus_one, Bound::minus_one};
 
@@ -47,7 +47,17 @@ CurveConditions::CurveConditions(const CharacteristicPolynomial& polynomial, con
     conditions_.emplace_back(polynomial.conditions()[i], curve, bounds[i]);
 }
 
+CurveConditions::CurveConditions(const Method& method, const Curve& curve)
+    : samples_(std::make_unique<const SampledCurve>(method, curve)), curve_(curve) {}
+
+CurveConditions::~CurveConditions() = default;
+
+double CurveConditions::radius(double t) const {
+  return polynomial_ ? polynomial_->radius(curve_.x(t), curve_.y(t)) : samples_->radius(t);
+}
+
 std::vector<Candidate> CurveConditions::candidates(double t_min, double t_max) const {
+  if (samples_) return samples_->candidates(t_min, t_max);
   std::vector<Candidate> found;
   const auto add = [&](const Polynomial& p, Bound bound) {
     for (double t : p.real_roots())
@@ -76,7 +86,11 @@ bool CurveConditions::unstable(double t) const {
 }
 
 bool CurveConditions::unstable_after_zero(double first) const {
-  if (!jury()) return unstable(between(0, first));
+  if (!jury()) {
+    const double t = between(0, first);
+    return unstable(t) ||
+           (samples_ && !stable(t) && std::isfinite(first) && samples_->grows_from_zero(first));
+  }
   return std::any_of(conditions_.begin(), conditions_.end(),
                      [](const Condition& c) { return c.sign_after_zero() < 0; });
 }

@@ -2,12 +2,16 @@
 // between two such points. Shared by the files of StabilityRegion; not for others.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "analysis/regions/characteristic.h"
 #include "analysis/regions/stability_region.h"
 
 namespace springstab {
+
+/// A computed |λ| is below 1 where it is so by the first, and above where by the second.
+inline constexpr double known_radius = 1e-12, neutral_radius = 1e-10;
 
 /// One of the three conditions along a curve.
 struct Condition {
@@ -28,10 +32,15 @@ struct Candidate {
   Bound bound;
 };
 
+class SampledCurve;
+
 class CurveConditions {
  public:
   /// The polynomial must outlive it.
   CurveConditions(const CharacteristicPolynomial& polynomial, const Curve& curve);
+  /// From the radii of a method's steps, which must outlive it.
+  CurveConditions(const Method& method, const Curve& curve);
+  ~CurveConditions();
 
   /// All in (t_min, t_max), ascending.
   std::vector<Candidate> candidates(double t_min, double t_max) const;
@@ -45,10 +54,11 @@ class CurveConditions {
   bool hold_on_unit_interval() const;
 
  private:
-  bool jury() const { return polynomial_->degree() == 2; }
-  double radius(double t) const { return polynomial_->radius(curve_.x(t), curve_.y(t)); }
+  bool jury() const { return polynomial_ && polynomial_->degree() == 2; }
+  double radius(double t) const;
 
-  const CharacteristicPolynomial* polynomial_;
+  const CharacteristicPolynomial* polynomial_ = nullptr;
+  std::unique_ptr<const SampledCurve> samples_;  // where there is no polynomial
   Curve curve_;
   std::vector<Condition> conditions_;
 };

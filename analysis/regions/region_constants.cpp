@@ -41,11 +41,7 @@ bool powers_bounded(const Eigen::MatrixXd& a) {
 }  // namespace
 
 bool StabilityRegion::powers_bounded_at(double x, double y) const {
-  const auto m = static_cast<Eigen::Index>(std::lround(std::sqrt(amplification_.size())));
-  Eigen::MatrixXd a(m, m);
-  for (Eigen::Index i = 0; i < a.size(); ++i)
-    a(i / m, i % m) = amplification_[static_cast<std::size_t>(i)](x, y);
-  return powers_bounded(a);
+  return powers_bounded(method_.amplification(x, y));
 }
 
 RegionConstants StabilityRegion::find_constants() const {
@@ -88,6 +84,15 @@ std::pair<double, double> StabilityRegion::highest_point(const Piece& piece) con
   const auto best = static_cast<std::size_t>(std::max_element(ys.begin(), ys.end()) - ys.begin());
   if (best == 0 || best == samples) return {best == 0 ? piece.left : piece.right, ys[best]};
 
+  if (by_values_) {
+    double left = xs[best - 1], right = xs[best + 1];
+    for (int i = 0; i < 60; ++i) {
+      const double a = right - (right - left) / std::numbers::phi,
+                   b = left + (right - left) / std::numbers::phi;
+      (top(a) < top(b) ? left : right) = top(a) < top(b) ? a : b;
+    }
+    return {between(left, right), top(between(left, right))};
+  }
   const auto bound = static_cast<std::size_t>(piece.inner.intervals.back().upper_bound);
   const BivariatePolynomial slope = jury_[bound].numerator().derivative_x();
   const auto steepness = [&](double x) { return slope(x, top(x)); };

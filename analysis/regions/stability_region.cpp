@@ -11,6 +11,12 @@
 #include "analysis/regions/region_pieces.h"
 
 namespace springstab {
+namespace {
+
+constexpr Eigen::Index largest_exact = 6;  // m up to which the polynomial's conditions serve
+
+}  // namespace
+
 // u -> 4u / (1 - u²).
 std::vector<double> whole_line() {
   constexpr int half = 400;
@@ -34,8 +40,9 @@ double cosine_point(double left, double right, double angle) {
 }
 
 StabilityRegion::StabilityRegion(const Method& method)
-    : amplification_(method.symbolic_step()),
-      polynomial_(amplification_),
+    : method_(method),
+      by_values_(method.info().regions_by_values || method.size() > largest_exact),
+      polynomial_(by_values_ ? std::vector<RationalFunction>(4, 0.0) : method.symbolic_step()),
       jury_(polynomial_.conditions()),
       matrix_form_(springstab::matrix_form(method, polynomial_)) {
   all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
@@ -45,9 +52,13 @@ StabilityRegion::StabilityRegion(const Method& method)
 StabilityRegion::StabilityRegion(StabilityRegion&&) noexcept = default;
 StabilityRegion::~StabilityRegion() = default;
 
+CurveConditions StabilityRegion::along(const Curve& curve) const {
+  return by_values_ ? CurveConditions(method_, curve) : CurveConditions(polynomial_, curve);
+}
+
 std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve, double t_min,
                                                               double t_max) const {
-  const CurveConditions conditions(polynomial_, curve);
+  const CurveConditions conditions = along(curve);
   std::vector<Candidate> cuts = conditions.candidates(t_min, t_max);
   cuts.insert(cuts.begin(), {t_min, Bound::window});
   cuts.push_back({t_max, Bound::window});
@@ -68,7 +79,7 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
 }
 
 double StabilityRegion::first_exit(const Curve& curve) const {
-  const CurveConditions conditions(polynomial_, curve);
+  const CurveConditions conditions = along(curve);
   const std::vector<Candidate> cuts = conditions.candidates(0, infinity);
   if (conditions.unstable_after_zero(cuts.empty() ? infinity : cuts.front().t)) return 0;
   for (std::size_t i = 0; i < cuts.size(); ++i)
@@ -92,6 +103,7 @@ StabilityRegion::Column StabilityRegion::column(double x, double y_min, double y
 }
 
 bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
+  if (by_values_ || other.by_values_) return method_ == other.method_;
   return std::equal(jury_.begin(), jury_.end(), other.jury_.begin(),
                     [](const RationalFunction& f, const RationalFunction& g) {
                       return f.numerator() == g.numerator() && f.denominator() == g.denominator();
@@ -99,7 +111,8 @@ bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
 }
 
 std::optional<HalfPlane> StabilityRegion::exact_condition() const {
-  if (matrix_form_ != MatrixForm::scalar_coefficients || polynomial_.degree() != 2) return std::nullopt;
+  if (by_values_ || matrix_form_ != MatrixForm::scalar_coefficients || polynomial_.degree() != 2)
+    return std::nullopt;
   const auto holds_on_quadrant = [](const std::array<double, 3>& c) {
     return std::all_of(c.begin(), c.end(), [](double v) { return v >= 0; });
   };
@@ -114,15 +127,18 @@ std::optional<HalfPlane> StabilityRegion::exact_condition() const {
   return HalfPlane{-(*c)[1], -(*c)[2], (*c)[0]};
 }
 
-// Every x in (left.x, right.x) where the structure changes, to the last bit, appended to `breaks`.
+// Every x in (left.x, right.x) where the structure changes, to the last bit (by values to 1e-9), appended to
+// `breaks`.
 void StabilityRegion::find_breaks(Column left, const Column& right, double y_min, double y_max,
                                   std::vector<double>& breaks) const {
+  const double width = by_values_ ? 1e-9 * std::max(1.0, std::abs(right.x)) : 1e-16;
   for (int i = 0; !left.same_structure(right); ++i) {
+    if (i == 16 && by_values_) return;  // near X = 0, where a radius is 1 to rounding
     if (i == 16)
       throw std::runtime_error("the stability boundary near X = " + std::to_string(left.x) +
                                " could not be resolved");
     Column before = left, after = right;
-    while (after.x - before.x > 1e-16) {
+    while (after.x - before.x > width) {
       const double x = between(before.x, after.x);
       if (x == before.x || x == after.x) break;
       Column middle = column(x, y_min, y_max);
@@ -156,7 +172,7 @@ std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::ve
 }
 
 bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, double y1) const {
-  return CurveConditions(polynomial_, {{{x0, x1 - x0}}, {{y0, y1 - y0}}}).hold_on_unit_interval();
+  return along({{{x0, x1 - x0}}, {{y0, y1 - y0}}}).hold_on_unit_interval();
 }
 
 const StabilityRegion& stability_region(const Method& method) {

@@ -5,7 +5,9 @@
 // (X(t), Y(t)) they are rational in t, so where they vanish is a polynomial root problem: columns, damping
 // lines and the path of one mode as h grows are all such curves. No raster is involved. Between two roots
 // the signs of the three decide for the 2x2 matrix of a method that carries nothing, else the eigenvalues
-// at one point do. (A method with eigenvalues that are 0, 1 or -1 for all X and Y is judged by the others.)
+// at one point do. Methods of very many stages, and those that carry more than four vectors beyond x and v,
+// are judged by sampled eigenvalues (sampled_curve.h). (A method with eigenvalues that are 0, 1 or -1 for all
+// X and Y is judged by the others.)
 #pragma once
 
 #include <array>
@@ -65,6 +67,8 @@ struct DampingLine {
   double slope;
   double reach;  // 0 where no line leaves (x0, 0) into the region; ∞ where nothing ends it
 };
+
+class CurveConditions;
 
 class StabilityRegion {
  public:
@@ -130,7 +134,11 @@ class StabilityRegion {
   bool powers_bounded_at(double x, double y) const;
   std::pair<double, double> highest_point(const Piece& piece) const;
 
-  std::vector<RationalFunction> amplification_;  // m x m, row by row
+  CurveConditions along(const Curve& curve) const;
+  Bound binding_at(double x, double y) const;  // of a point of the boundary
+
+  Method method_;
+  bool by_values_;  // not by the polynomial
   CharacteristicPolynomial polynomial_;
   std::array<RationalFunction, 3> jury_;  // indexed by Bound
   MatrixForm matrix_form_;

@@ -46,6 +46,7 @@ struct MethodInfo {
   bool linearized = false;  // an explicit method over forces frozen to a linear system (paper §4)
   int memory = 0;           // vectors carried beyond x and v
   StepChange when_h_changes = StepChange::nothing;
+  bool regions_by_values = false;  // so many stages that a formula in powers of X and Y has lost its digits
 };
 
 template <class Description, class V>

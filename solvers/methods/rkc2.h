@@ -21,7 +21,9 @@ struct Rkc2 {
   explicit Rkc2(Parameters& given) : stages(given.count("stages", 5)), name(given.text()) {
     given.require(stages >= 2 && stages <= 200, "between 2 and 200 stages");
   }
-  MethodInfo info() const { return {name, "RKC2", 2, false}; }
+  MethodInfo info() const {
+    return {.name = name, .title = "RKC2", .order = 2, .implicit = false, .regions_by_values = stages > 3};
+  }
 
   struct Stage {
     double mu, nu, mu_rate, gamma_rate;  // μ, ν, μ̃, γ̃

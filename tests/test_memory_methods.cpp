@@ -12,6 +12,7 @@
 #include "analysis/limits/transient_growth.h"
 #include "analysis/regions/amplification.h"
 #include "analysis/regions/stability_region.h"
+#include "analysis/spectra/rigid_motions.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/methods/parameters.h"
 #include "solvers/simulation.h"
@@ -158,7 +159,7 @@ BOOST_AUTO_TEST_CASE(methods_stable_at_every_step_cover_the_quadrant) {
                                     {"tr-bdf2", 0.0},
                                     {"bdf2", 0.0},
                                     {"trapezoidal", 1.0}})
-    BOOST_TEST(std::abs(radius(name, 3, 1e10) - limit) < 1e-4, name);
+    BOOST_TEST(std::abs(radius(name, 3, 1e10) - limit) < 2 * std::pow(1e10, -0.25), name);
 }
 
 BOOST_AUTO_TEST_CASE(explicit_methods_have_their_published_intervals) {
@@ -262,7 +263,8 @@ BOOST_AUTO_TEST_CASE(limits_of_nets_are_below_the_truth_of_dense_eigenvalues) {
   RandomNets random(23);
   int exact = 0, certified = 0, unlimited = 0, none = 0;
   for (int trial = 0; trial < 12; ++trial) {
-    const StructuralMatrices s = matrices(random.net(trial % 2 == 0));
+    // else a double eigenvalue 1, which rounding moves by its root
+    const StructuralMatrices s = without_rigid_motions(matrices(random.net(trial % 2 == 0)));
     const StiffestMode k0 = stiffest_mode(s);
     GeneralDamping limits(s, k0, {.kind = DampingModel::Kind::general}, 1.5, true);
     const auto growth = [&](const std::string& name, double h) {
@@ -279,9 +281,8 @@ BOOST_AUTO_TEST_CASE(limits_of_nets_are_below_the_truth_of_dense_eigenvalues) {
       none += !l.h_certified;
       if (!l.h_certified) BOOST_TEST(!l.unproved.empty(), name);
       if (l.h_certified) {
-        BOOST_REQUIRE(l.h_max.has_value());
-        BOOST_TEST(*l.h_certified <= *l.h_max, name);
-        for (const double part : {0.3, 0.7, 1.0})
+        if (l.h_max) BOOST_TEST(*l.h_certified <= *l.h_max, name);
+        for (const double part : {0.3, 0.7, 0.9999})  // at the limit itself -1 may be a double eigenvalue
           BOOST_TEST(growth(name, part * *l.h_certified) < 1 + 1e-7, name);
         certified += 1;
       }

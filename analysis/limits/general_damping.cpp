@@ -109,7 +109,7 @@ MethodLimits GeneralDamping::compute(const Method& method) {
   }
   if (limits.status != LimitStatus::unknown) return limits;
   if (stability_region(method).matrix_form() == MatrixForm::none) {
-    limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
+    add_proved_at_one_step(method, limits);
     return limits;
   }
   if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
@@ -240,6 +240,20 @@ void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimi
   limits.h_max = least;
   limits.status = LimitStatus::limited;
   limits.source = LimitSource::estimate;
+}
+
+// Of methods whose eigenvalues here are not those of scalar modes: the modes only guess a step to be proved.
+void GeneralDamping::add_proved_at_one_step(const Method& method, MethodLimits& limits) {
+  limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
+  if (!proofs_ || !method.has_magnitude() || s_.size() > LyapunovSteps::unknowns_limit) return;
+  double least = infinity;
+  for (const Stiffening& stiffening : stiffenings())
+    least = std::min(least, certified_.estimated(method, stiffening).value_or(0));
+  if (!lyapunov_) lyapunov_.emplace(s_);
+  if (const std::optional<double> h = lyapunov_->certified(method, 0, least)) {
+    set_certified(h, Proof::lyapunov, limits);
+    limits.recommended = *h;
+  }
 }
 
 // Where the polygons prove much less than what is true, and there are few unknowns.

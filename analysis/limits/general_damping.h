@@ -52,6 +52,7 @@ class GeneralDamping {
   void add_certified(const Method& method, MethodLimits& limits);
   void add_estimate(const Method& method, MethodLimits& limits);
   void add_estimate_near_boundary(const Method& method, MethodLimits& limits);
+  void add_proved_at_one_step(const Method& method, MethodLimits& limits);
   void add_lyapunov(const Method& method, MethodLimits& limits);
 
   StiffestMode k0_;

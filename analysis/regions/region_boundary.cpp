@@ -174,7 +174,9 @@ Window StabilityRegion::natural_window(double margin) const {
     }
   }
   box.y_max = std::max(box.y_max, constants_.y_max);  // the apex lies between two samples
-  if (!std::isfinite(box.y_max - box.y_min) || std::max(-box.x_min, box.x_max) > 0.9 * whole_line().back())
+  const bool ends = by_values_ && std::isfinite(constants_.real_interval);
+  if (!std::isfinite(box.y_max - box.y_min) ||
+      (!ends && std::max(-box.x_min, box.x_max) > 0.9 * whole_line().back()))
     return {-8, 8, -8, 8};
   const double dx = margin * (box.x_max - box.x_min), dy = margin * (box.y_max - box.y_min);
   return {box.x_min - dx, box.x_max + dx, box.y_min - dy, box.y_max + dy};

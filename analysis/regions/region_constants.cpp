@@ -55,7 +55,8 @@ RegionConstants StabilityRegion::find_constants() const {
   }
   if (all_pieces_.empty()) found.y_max = 0;
   // Unbounded, too, where the top ends at a pole or still rises at the end of the line.
-  const bool at_the_end = std::abs(found.x_at_y_max) >= whole_line().back();
+  const bool ends = by_values_ && std::isfinite(found.real_interval);
+  const bool at_the_end = !ends && std::abs(found.x_at_y_max) >= whole_line().back();
   if (found.y_max > 1e12 || at_the_end) found.y_max = infinity;
   if (found.y_max == infinity) found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
   if (std::isfinite(found.x_at_y_max))

@@ -45,7 +45,10 @@ StabilityRegion::StabilityRegion(const Method& method)
       polynomial_(by_values_ ? std::vector<RationalFunction>(4, 0.0) : method.symbolic_step()),
       jury_(polynomial_.conditions()),
       matrix_form_(springstab::matrix_form(method, polynomial_)) {
-  all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
+  std::vector<double> line = whole_line();
+  if (const double interval = critical_step(0, 1); by_values_ && std::isfinite(interval))  // X < twice that
+    for (double& x : line) x *= std::max(1.0, 3 * interval / whole_line().back());
+  all_pieces_ = smooth_pieces(line, -infinity, infinity);
   constants_ = find_constants();
 }
 

@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <boost/test/unit_test.hpp>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 #include <string>
@@ -17,6 +19,7 @@
 #include "solvers/methods/parameters.h"
 #include "solvers/simulation.h"
 #include "tests/random_nets.h"
+#include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(memory_methods)
 
@@ -314,6 +317,49 @@ BOOST_AUTO_TEST_CASE(implicit_damping_has_its_exact_limit) {
   const StructuralMatrices s = matrices(random.net(false));
   const double h = exact_limit(NumericalRange(s), c).value();
   BOOST_TEST(h > 2 / std::sqrt(stiffest_mode(s).value));
+}
+
+// Steps measured by bisection on runs of MuJoCo 3, a chain between two walls: its Euler takes the dampers at
+// the joints implicitly and those along the springs explicitly.
+BOOST_AUTO_TEST_CASE(a_physics_engine_diverges_where_its_method_does) {
+  const auto file = shared_data("engines/mujoco_chain.json");
+  if (!file) return;
+  const nlohmann::json chain = nlohmann::json::parse(std::ifstream(*file));
+  const auto numbers = [&](const char* key) { return chain.at(key).get<std::vector<double>>(); };
+  const std::vector<double> mass = numbers("mass"), joint = numbers("joint_damping");
+  const auto n = static_cast<Eigen::Index>(mass.size());
+  const auto between_walls = [&](const char* key) {
+    const std::vector<double> k = numbers(key);
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      a(i, i) = k[at] + k[at + 1];
+      if (i > 0) a(i, i - 1) = a(i - 1, i) = -k[at];
+    }
+    return a;
+  };
+  const auto diagonal = [&](const std::vector<double>& d) {
+    return Eigen::MatrixXd(Eigen::Map<const Eigen::VectorXd>(d.data(), n).asDiagonal());
+  };
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(n, n), dampers = between_walls("damping");
+  const auto limit = [&](const char* method, const Eigen::MatrixXd& damping) {
+    const StructuralMatrices s =
+        prepare(SparseMatrix(between_walls("stiffness").sparseView()),
+                SparseMatrix(diagonal(mass).sparseView()), SparseMatrix(damping.sparseView()));
+    const StiffestMode k0 = stiffest_mode(s);
+    if (damping.isZero()) return *method_limits(method, k0, {}, 1.5).h_max;
+    return *GeneralDamping(s, k0, {.kind = DampingModel::Kind::general}, 1.5, false).limits(method).h_max;
+  };
+  const auto measured = [&](const char* which) {
+    return chain.at("largest_stable_step").at(which).get<double>();
+  };
+  for (const char* method : {"symplectic-euler", "implicit-damping-euler", "newmark:rule=central-difference"})
+    BOOST_TEST(limit(method, none) == measured("Euler, no damping"), tolerance(1e-4));
+  BOOST_TEST(limit("implicit-damping-euler", diagonal(joint)) == measured("Euler, joint dampers"),
+             tolerance(1e-4));
+  BOOST_TEST(limit("symplectic-euler", dampers) == measured("Euler, spring dampers"), tolerance(1e-4));
+  BOOST_TEST(limit("rk4", none) == measured("RK4, no damping"), tolerance(1e-4));
+  BOOST_TEST(limit("rk4", dampers + diagonal(joint)) == measured("RK4, both"), tolerance(1e-4));
 }
 
 BOOST_AUTO_TEST_CASE(a_damped_run_grows_no_further_than_its_method_lets_it) {

@@ -37,7 +37,9 @@ struct UnknownMethod : std::invalid_argument {
 /// Cheap to copy, and safe to share between threads.
 class Method {
  public:
-  /// The built-in method of that name; throws UnknownMethod, which lists the known names.
+  /// The built-in method of that name, which may have parameters: "newmark:beta=0.25,gamma=0.5". Equal texts
+  /// give copies of one value. Throws UnknownMethod, which lists the known names, and
+  /// std::invalid_argument that lists the known parameters.
   Method(std::string_view name);
   Method(const std::string& name) : Method(std::string_view(name)) {}
   Method(const char* name) : Method(std::string_view(name)) {}
@@ -52,6 +54,8 @@ class Method {
   std::vector<RationalFunction> symbolic_step() const { return self_->symbolic_step(); }
   /// A at one point. All ∞ at a pole and where the step overflows.
   Eigen::MatrixXd amplification(double x, double y) const { return self_->amplification(x, y); }
+  /// What a run starts from at one point, m x 2: of the starts (x, v) = (1, 0) and (0, 1).
+  Eigen::MatrixXd starts(double x, double y) const { return self_->starts(x, y); }
   /// See spectral_radius and simulate_cells in regions/amplification.h.
   void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const {
     self_->radii(x, y, rho);
@@ -87,6 +91,7 @@ class Method {
     virtual std::unique_ptr<Stepper> stepper() const = 0;
     virtual std::vector<RationalFunction> symbolic_step() const = 0;
     virtual Eigen::MatrixXd amplification(double x, double y) const = 0;
+    virtual Eigen::MatrixXd starts(double x, double y) const = 0;
     virtual void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const = 0;
     virtual void fates(std::span<const double> x, std::span<const double> y, long steps, double threshold,
                        std::span<CellFate> fate) const = 0;
@@ -108,6 +113,7 @@ class Method {
     Eigen::MatrixXd amplification(double x, double y) const override {
       return amplification_at(description, x, y);
     }
+    Eigen::MatrixXd starts(double x, double y) const override { return starts_at(description, x, y); }
     void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const override {
       radii_of(description, x, y, rho);
     }
@@ -137,7 +143,9 @@ Method make_method(Description description) {
   return Method(std::make_shared<Method::Described<Description>>(std::move(description)));
 }
 
-/// The methods built in, in the order of the list.
+/// The methods that tables and figures show where none is named, in the order of the list.
 const std::vector<Method>& all_methods();
+/// The others that are built in, with the parameters they have where none are given.
+const std::vector<Method>& more_methods();
 
 }  // namespace springstab

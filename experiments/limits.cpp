@@ -8,6 +8,7 @@
 
 #include "analysis/structure_limits.h"
 #include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
@@ -199,7 +200,8 @@ void print(std::string_view method, const MethodLimits& l) {
 void check(const LimitsOptions& options) {
   if (!(options.max_step > 0 && std::isfinite(options.max_step)))
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
-  if (!options.method.empty()) Method{options.method};
+  if (!options.method.empty() && !options.methods.empty())
+    throw InputError("--method, --methods", 0, "are both given, expected one of them");
 }
 
 Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
@@ -268,6 +270,8 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   check(options);
+  const std::vector<Method> methods =
+      options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
   Subject subject(options.input, true);
   print_mesh_notes(subject);
   print_size_warning(subject);
@@ -280,8 +284,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   std::optional<Waiting> waiting(std::in_place, "limits", common.quiet);
   waiting->now("k0");
   int status = answer.k0().converged ? done : no_answer;
-  for (const Method& method : all_methods()) {
-    if (!options.method.empty() && method.name() != options.method) continue;
+  for (const Method& method : methods) {
     waiting->now(method.name());
     const MethodLimits& limits = answer.limits(method);
     if (!options.method.empty() && !limits.h_max) status = no_answer;

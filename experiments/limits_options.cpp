@@ -39,7 +39,9 @@ Subcommand limits_command() {
           "          springstab limits --stiffness K.mtx --mass M.mtx",
       .options = with_input(
           o->input,
-          {Option("--method", &o->method, "one of " + method_names() + " (default: all)").shown_as("NAME"),
+          {Option("--method", &o->method, "only this one of " + method_names() + "; NAME:key=value,...")
+               .shown_as("NAME"),
+           methods_option(o->methods),
            Option("--safety", &o->safety, "factor F >= 1 on the stiffness for the recommended step")
                .with_default(),
            Option("--max-step", &o->max_step, "recommended where nothing limits the step, in seconds")

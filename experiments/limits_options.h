@@ -10,7 +10,8 @@ namespace springstab {
 
 struct LimitsOptions {
   InputOptions input;
-  std::string method;  // empty for all
+  std::string method;   // empty for `methods`
+  std::string methods;  // see methods_option
   double safety = 1.5;
   double max_step = 0.01;  // [s], where nothing limits the step
   bool certify = false;

@@ -195,7 +195,7 @@ static int run_region(const CommonOptions& common, const RegionOptions& options)
       {"window",
        {{"x", {grid.window.x_min, grid.window.x_max}}, {"y", {grid.window.y_min, grid.window.y_max}}}},
       {"y_max", number(c.y_max)},
-      {"x_at_y_max", std::isfinite(c.y_max) ? number(c.x_at_y_max) : Json()},
+      {"x_at_y_max", std::isfinite(c.x_at_y_max) ? number(c.x_at_y_max) : Json()},
       {"y_max_attained", c.y_max_attained},
       {"cells", radii.size()},
       {"stable_cells", stable},
@@ -219,7 +219,9 @@ static int run_region(const CommonOptions& common, const RegionOptions& options)
   }
   std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", options.method.c_str(), grid.window.x_min,
                     grid.window.x_max, grid.window.y_min, grid.window.y_max);
-  if (std::isfinite(c.y_max)) {
+  if (c.y_max <= 0) {
+    std::cout << "  no X, Y is stable: the method amplifies\n";
+  } else if (std::isfinite(c.y_max)) {
     std::cout << text("  largest Y   %.12g at X = %.12g%s\n", c.y_max, c.x_at_y_max,
                       c.y_max_attained ? "" : " (not attained: powers grow there)");
   } else {

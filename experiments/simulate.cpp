@@ -120,9 +120,11 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   CountingSystem counted(subject.system(), resumed ? counts_of(others.at("counts")) : Counts());
   const double cpu_before = cpu_seconds() - (resumed ? others.at("cpu_seconds").get<double>() : 0);
   course.end = std::move(begin.state);
+  const auto stepper = Method(options.method).stepper();
+  if (!resumed) stepper->start(counted, plan.h, course.end);
   Progress progress("simulating", common.quiet);
   course.result = resume_simulation(
-      counted, *Method(options.method).stepper(), std::move(begin.run), course.watch, course.end,
+      counted, *stepper, std::move(begin.run), course.watch, course.end,
       [&](const RunSoFar& so_far, const State<Vector>& s) {
         recorder->record(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))

@@ -42,9 +42,19 @@ std::vector<Point> random_points() {
   return points;
 }
 
+/// Those of both lists, and more parameters of some.
+std::vector<Method> every_method() {
+  std::vector<Method> methods = all_methods();
+  methods.insert(methods.end(), more_methods().begin(), more_methods().end());
+  for (const char* name : {"newmark:beta=0.1,gamma=0.6", "newmark:rule=central-difference",
+                           "generalized-alpha:rho=0.3", "rkc2:stages=9"})
+    methods.emplace_back(name);
+  return methods;
+}
+
 std::vector<std::unique_ptr<Stepper>> all_steppers() {
   std::vector<std::unique_ptr<Stepper>> steppers;
-  for (const Method& method : all_methods()) steppers.push_back(method.stepper());
+  for (const Method& method : every_method()) steppers.push_back(method.stepper());
   return steppers;
 }
 
@@ -173,7 +183,9 @@ bool same_bits(const Vector& a, const Vector& b) {
 }
 
 bool same_bits(const State<Vector>& a, const State<Vector>& b) {
-  return same_bits(a.x, b.x) && same_bits(a.v, b.v);
+  return same_bits(a.x, b.x) && same_bits(a.v, b.v) &&
+         std::equal(a.memory.begin(), a.memory.end(), b.memory.begin(), b.memory.end(),
+                    [](const Vector& u, const Vector& w) { return same_bits(u, w); });
 }
 
 SparseMatrix sparse(const Eigen::MatrixXd& a) { return a.sparseView(); }
@@ -181,7 +193,7 @@ SparseMatrix sparse(const Eigen::MatrixXd& a) { return a.sparseView(); }
 }  // namespace
 
 BOOST_AUTO_TEST_CASE(names_are_unique_and_find_their_method) {
-  for (const Method& method : all_methods()) {
+  for (const Method& method : every_method()) {
     BOOST_TEST((Method(method.name()) == method), "the name " << method.name() << " finds another method");
     BOOST_TEST(method.stepper() != nullptr);
     BOOST_TEST(!method.info().title.empty());
@@ -195,7 +207,8 @@ BOOST_AUTO_TEST_CASE(an_unknown_name_is_refused_with_the_known_ones) {
     const auto lists_all = [&](const std::invalid_argument& error) {
       const std::string what = error.what();
       bool all = what.find("'" + name + "'") != std::string::npos;
-      for (const Method& method : all_methods()) all = all && what.find(method.name()) != std::string::npos;
+      for (const auto* list : {&all_methods(), &more_methods()})
+        for (const Method& method : *list) all = all && what.find(method.name()) != std::string::npos;
       return all;
     };
     BOOST_CHECK_EXCEPTION(Method(name).stepper(), std::invalid_argument, lists_all);
@@ -257,10 +270,11 @@ BOOST_AUTO_TEST_CASE(the_measured_order_of_accuracy_is_the_stated_one) {
   const auto exact = reference(x0, v0, t, 1e-14), rougher = reference(x0, v0, t, 1e-12);
   const double doubt = std::hypot(exact[0] - rougher[0], exact[1] - rougher[1]);
   Pendulum pendulum;
-  for (const Method& method : all_methods()) {
+  for (const Method& method : every_method()) {
     const auto stepper = method.stepper();
     const auto error = [&](int steps) {
       State<Vector> state{Vector::Constant(1, x0), Vector::Constant(1, v0)};
+      stepper->start(pendulum, t / steps, state);
       for (int i = 0; i < steps; ++i)
         BOOST_REQUIRE(stepper->step(pendulum, t / steps, state) == StepStatus::done);
       return std::hypot(state.x[0] - exact[0], state.v[0] - exact[1]);
@@ -335,11 +349,12 @@ BOOST_AUTO_TEST_CASE(explicit_euler_with_alpha_h_is_symplectic_euler_on_matrices
 
 BOOST_AUTO_TEST_CASE(a_failed_step_leaves_the_state_bit_for_bit) {
   Chain chain(9);
-  for (const Method& method : all_methods()) {
+  for (const Method& method : every_method()) {
     const auto stepper = method.stepper();
-    const State<Vector> before = random_state(9, 10);
-    State<Vector> state = before;
+    State<Vector> before = random_state(9, 10);
     chain.failing_call = 0;
+    stepper->start(chain, 0.01, before);
+    State<Vector> state = before;
     chain.restart();
     BOOST_TEST_REQUIRE((stepper->step(chain, 0.01, state) == StepStatus::done));
     BOOST_TEST(!same_bits(state, before), method.name() << " did not move");
@@ -363,10 +378,11 @@ BOOST_AUTO_TEST_CASE(a_failed_step_leaves_the_state_bit_for_bit) {
 BOOST_AUTO_TEST_CASE(an_implicit_step_passes_on_how_its_solve_failed) {
   Chain chain(9);
   int implicit = 0;
-  for (const Method& method : all_methods()) {
+  for (const Method& method : every_method()) {
     for (const StepStatus failure : {StepStatus::not_positive_definite, StepStatus::not_converged}) {
       const auto stepper = method.stepper();
-      const State<Vector> before = random_state(9, 11);
+      State<Vector> before = random_state(9, 11);
+      stepper->start(chain, 0.01, before);
       State<Vector> state = before;
       chain.solve_status = failure;
       const StepStatus status = stepper->step(chain, 0.01, state);
@@ -382,9 +398,12 @@ BOOST_AUTO_TEST_CASE(an_implicit_step_passes_on_how_its_solve_failed) {
 BOOST_AUTO_TEST_CASE(a_step_depends_on_the_state_alone) {
   Chain chain(9), other(23);
   for (const auto& stepper : all_steppers()) {
-    const State<Vector> before = random_state(9, 12);
-    State<Vector> first = before, second = before, unrelated = random_state(9, 13),
+    State<Vector> before = random_state(9, 12), unrelated = random_state(9, 13),
                   longer = random_state(23, 14);
+    stepper->start(chain, 0.013, before);
+    stepper->start(chain, 0.02, unrelated);
+    stepper->start(other, 0.02, longer);
+    State<Vector> first = before, second = before;
     BOOST_REQUIRE(stepper->step(chain, 0.013, first) == StepStatus::done);
     BOOST_REQUIRE(stepper->step(chain, 0.02, unrelated) == StepStatus::done);
     BOOST_REQUIRE(stepper->step(other, 0.02, longer) == StepStatus::done);
@@ -394,25 +413,32 @@ BOOST_AUTO_TEST_CASE(a_step_depends_on_the_state_alone) {
 }
 
 BOOST_AUTO_TEST_CASE(a_system_of_any_vector_type_takes_the_same_step) {
-  Methods::for_each([](const auto& description) {
+  const auto check = [](const auto& description) {
     using Three = Eigen::Array3d;
     Oscillator<double> one{.k = 3.7, .d = 0.9};
     Oscillator<Three> three{.k = {3.7, 1, 9}, .d = {0.9, 2, 0}};
     State<double> scalar{0.4, -1.3};
     State<Three> lanes{{0.4, 1, 2}, {-1.3, 0, 5}};
-    BOOST_TEST((make_steps<double>(description).step(one, 0.21, scalar) == StepStatus::done));
-    BOOST_TEST((make_steps<Three>(description).step(three, 0.21, lanes) == StepStatus::done));
+    auto steps = make_steps<double>(description);
+    auto lane_steps = make_steps<Three>(description);
+    start_steps(steps, description.info().memory, one, 0.21, scalar);
+    start_steps(lane_steps, description.info().memory, three, 0.21, lanes);
+    BOOST_TEST((steps.step(one, 0.21, scalar) == StepStatus::done));
+    BOOST_TEST((lane_steps.step(three, 0.21, lanes) == StepStatus::done));
     BOOST_TEST(lanes.x[0] == scalar.x, description.info().name);
     BOOST_TEST(lanes.v[0] == scalar.v, description.info().name);
-  });
+  };
+  Methods::for_each(check);
+  MoreMethods::for_each(check);
 }
 
 BOOST_AUTO_TEST_CASE(only_the_first_step_allocates) {
   constexpr Eigen::Index n = 40;
   Chain chain(n);
-  for (const Method& method : all_methods()) {
+  for (const Method& method : every_method()) {
     const auto stepper = method.stepper();
     State<Vector> state = random_state(n, 15);
+    stepper->start(chain, 0.01, state);
     const long before = allocations();
     BOOST_REQUIRE(stepper->step(chain, 0.01, state) == StepStatus::done);
     const long warm = allocations();

@@ -220,6 +220,7 @@ BOOST_AUTO_TEST_CASE(a_killed_simulation_ends_as_if_it_had_not_been) {
   const std::vector<Arguments> runs{
       {"simulate", stretched, "--method", "linearized-explicit-euler", "--duration", "10"},
       {"simulate", slack, "--method", "implicit-euler", "--step", "0.005", "--duration", "20"},
+      {"simulate", slack, "--method", "bdf2", "--step", "0.005", "--duration", "20"},
       {"simulate", "--stiffness", chain, "--method", "rk4", "--duration", "2500", "--frames", "500"}};
   long halved = 0;
   long undone = 0;

@@ -18,7 +18,9 @@ constexpr std::string_view no_step = "no positive step is stable";
 // The positive root of a h d + b h² k = c, without cancellation; ∞ where there is none.
 double root(double a, double b, double c, const ModePoint& p) {
   const double linear = a * std::max(p.d, 0.0), quadratic = b * std::max(p.k, 0.0);
-  return 2 * c / (linear + std::hypot(linear, 2 * std::sqrt(c * quadratic)));
+  const double discriminant = std::hypot(linear, 2 * std::sqrt(c * quadratic));
+  if (linear < 0) return quadratic > 0 ? (discriminant - linear) / (2 * quadratic) : infinity;
+  return 2 * c / (linear + discriminant);
 }
 
 StructuralMatrices stiffened(const StructuralMatrices& s, const Stiffening& stiffening) {
@@ -31,7 +33,8 @@ StructuralMatrices stiffened(const StructuralMatrices& s, const Stiffening& stif
 }  // namespace
 
 // Newton's method on λ_max, from above: a unit vector's own root is an upper bound, and the eigenvector at h
-// has the root to second order. The way there needs no accurate eigenvectors.
+// has the root to second order. The way there needs no accurate eigenvectors. With a < 0, too, every vector's
+// steps are those below its one positive root.
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
                                   const Stiffening& stiffening) {
   const auto& [a, b, c] = condition;
@@ -114,6 +117,10 @@ MethodLimits GeneralDamping::compute(const Method& method) {
     return limits;
   }
   if (limits.status != LimitStatus::unknown) return limits;
+  if (stability_region(method).matrix_form() == MatrixForm::none) {
+    add_proved_at_one_step(method, limits);
+    return limits;
+  }
   if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
     add_exact(*condition, limits);
   } else {
@@ -197,7 +204,7 @@ void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
   const std::vector<Stiffening> all = stiffenings();
   for (std::size_t i = 0; i < spectra_.size() && spectra_[i]; ++i) {
     if (semidefinite && growth_rate(*spectra_[i]) > 0) return;  // which cannot be: rounding is large
-    const std::optional<double> h = has_stability_function(method)
+    const std::optional<double> h = stability_region(method).matrix_form() == MatrixForm::stability_function
                                         ? critical_step(method, *spectra_[i])
                                         : transition_limit(method, stiffened(s_, all[i]), *spectra_[i]);
     if (h == 0 && i == 0) {
@@ -247,6 +254,20 @@ void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimi
   limits.h_max = least;
   limits.status = LimitStatus::limited;
   limits.source = LimitSource::estimate;
+}
+
+// Of methods whose eigenvalues here are not those of scalar modes: the modes only guess a step to be proved.
+void GeneralDamping::add_proved_at_one_step(const Method& method, MethodLimits& limits) {
+  limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
+  if (!proofs_ || !method.has_magnitude() || s_.size() > LyapunovSteps::unknowns_limit) return;
+  double least = infinity;
+  for (const Stiffening& stiffening : stiffenings())
+    least = std::min(least, certified_.estimated(method, stiffening).value_or(0));
+  if (!lyapunov_) lyapunov_.emplace(s_);
+  if (const std::optional<double> h = lyapunov_->certified(method, 0, least)) {
+    set_certified(h, Proof::lyapunov, limits);
+    limits.recommended = *h;
+  }
 }
 
 // Where the polygons prove much less than what is true, and there are few unknowns.

@@ -14,7 +14,7 @@
 namespace springstab {
 
 /// The h at which λ_max(x hD' + y h²K') = bound; ∞ where D' = K' = 0; nothing when an eigenvalue did not
-/// converge. x, y >= 0 and bound > 0; D', K' are those of `range`, stiffened.
+/// converge. y > 0, bound > 0; D', K' are those of `range`, stiffened.
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
                                   const Stiffening& stiffening = {});
 
@@ -52,6 +52,7 @@ class GeneralDamping {
   void add_certified(const Method& method, MethodLimits& limits);
   void add_estimate(const Method& method, MethodLimits& limits);
   void add_estimate_near_boundary(const Method& method, MethodLimits& limits);
+  void add_proved_at_one_step(const Method& method, MethodLimits& limits);
   void add_lyapunov(const Method& method, MethodLimits& limits);
 
   StiffestMode k0_;

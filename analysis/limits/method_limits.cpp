@@ -34,7 +34,7 @@ MethodLimits method_limits(const Method& method, const StiffestMode& k0, const D
   if (damping.kind == DampingModel::Kind::general) {
     if (k0.indefinite || !damping.semidefinite) {
       limits.unproved = k0.indefinite ? indefinite_stiffness : "D is indefinite";
-    } else if (region.constants().covers_quadrant) {
+    } else if (region.constants().covers_quadrant && region.matrix_form() != MatrixForm::none) {
       limits.status = LimitStatus::unlimited;
       limits.h_max = limits.h_certified = std::numeric_limits<double>::infinity();
       limits.proof = Proof::quadrant;

@@ -71,9 +71,13 @@ double designed_alpha(const StabilityRegion& region, double h, double d0) {
 DampingDesign design_damping(const StabilityRegion& region, double k_max, double d0) {
   check({.k_max = k_max, .d0 = d0});
   const double base_limit = d0 > 0 ? region.constants().real_interval / d0 : infinity;
-  const double apex_limit = k_max > 0 ? std::sqrt(region.constants().y_max / k_max) : infinity;
+  const RegionConstants& c = region.constants();
+  // A region may reach to ∞ without covering the quadrant, beside a pole.
+  const double highest =
+      c.y_max < infinity || c.covers_quadrant || d0 > 0 ? c.y_max : region.damping_line(0).reach;
+  const double apex_limit = k_max > 0 ? std::sqrt(highest / k_max) : infinity;
   double upper = std::min(base_limit, apex_limit);
-  if (upper == infinity) return {infinity, 0};
+  if (upper == infinity) return {infinity, k_max > 0 && !c.covers_quadrant ? infinity : 0};
 
   // Largest h whose best line from (h d0, 0) reaches h² k_max; the reach may jump, so all of (0, upper] is
   // scanned.
@@ -82,6 +86,10 @@ DampingDesign design_damping(const StabilityRegion& region, double k_max, double
   };
   const auto design = [&](double h) { return DampingDesign{h, designed_alpha(region, h, d0)}; };
   if (feasible(upper)) return design(upper);
+  if (d0 == 0) {  // every step has the lines from the origin
+    const auto [slope, reach] = region.damping_line(0);
+    return {std::sqrt(reach / k_max), std::sqrt(reach / k_max) * slope};
+  }
   constexpr int samples = 200;
   for (int i = samples - 1; i > 0; --i) {
     double lower = upper * i / samples;

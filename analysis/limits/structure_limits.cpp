@@ -1,5 +1,6 @@
 #include "analysis/limits/structure_limits.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/limits/transient_growth.h"
@@ -45,8 +46,10 @@ MethodLimits StructureLimits::compute(const Method& method) {
   if (limits.status == LimitStatus::unlimited) limits.recommended = options_.max_step;
   if (!options_.certify) return limits;
   if (structure_->every_pose)
-    if (const std::optional<HalfPlane> condition = stability_region(method).exact_condition())
+    if (std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
+      condition->x = std::max(condition->x, 0.0);  // damping that helps may be absent in some pose
       limits.every_pose = proved_limit(*structure_->every_pose, *condition, {.seed = options_.seed});
+    }
   if (!general) add_transient_growth(method, limits);
   return limits;
 }

@@ -12,7 +12,7 @@ namespace springstab {
 
 /// The largest ‖Aⁿ‖ over 0 <= n <= steps of an oscillator at (X, Y), Y > 0, in the norm of its energy,
 /// √(½ m v² + ½ m k x²): a lower bound of the supremum over all n. ∞ where a power overflows.
-/// Throws std::invalid_argument for a method that carries more than x and v.
+/// Of a method that carries more than x and v, those after the start of a run with any x and v.
 double transient_growth(const Method& method, double x, double y, long steps = 2000);
 
 /// The same of the system of these modes at the step h [s], over a sample of them, k_max included. In the

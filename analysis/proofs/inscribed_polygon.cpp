@@ -40,8 +40,10 @@ InscribedPolygons::InscribedPolygons(const StabilityRegion& region) {
     }
     if (reflex(part).empty()) parts.push_back(std::move(part));
   }
+  const auto has_edge = [](const Chain& part) { return part.size() > (part[1].x == 0 ? 2u : 1u); };
   for (Chain& part : parts)
-    if (is_inside(region, part)) convex_parts_.push_back(std::move(part));
+    if (part.size() >= 2 && has_edge(part) && is_inside(region, part))
+      convex_parts_.push_back(std::move(part));
 }
 
 // The boundary of the part of the region that touches the origin, in the quadrant: along its top to the

@@ -48,6 +48,11 @@ Polynomial operator+(const Polynomial& p, const Polynomial& q) {
   return sum;
 }
 
+Polynomial operator-(Polynomial p) {
+  for (double& v : p.c) v = -v;
+  return p;
+}
+
 Polynomial operator*(const Polynomial& p, const Polynomial& q) {
   Polynomial product;
   if (p.is_zero() || q.is_zero()) return product;

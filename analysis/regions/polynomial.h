@@ -25,6 +25,7 @@ struct Polynomial {
 };
 
 Polynomial operator+(const Polynomial& p, const Polynomial& q);
+Polynomial operator-(Polynomial p);
 Polynomial operator*(const Polynomial& p, const Polynomial& q);
 
 /// Σ c_ab X^a Y^b. Beside each coefficient stands the sum of the magnitudes that went into it, so that what

@@ -7,6 +7,7 @@
 
 #include "analysis/gsl/numerics.h"
 #include "analysis/regions/region_pieces.h"
+#include "analysis/regions/sampled_curve.h"
 #include "analysis/regions/stability_region.h"
 
 namespace springstab {
@@ -127,6 +128,15 @@ std::vector<BoundaryArc> StabilityRegion::boundary(const Window& window) const {
   return arcs;
 }
 
+Bound StabilityRegion::binding_at(double x, double y) const {
+  if (by_values_) return binding_condition(method_, x, y);
+  const auto violation = [&](std::size_t i) { return std::abs(jury_[i](x, y)); };
+  std::size_t binding = 0;
+  for (std::size_t i = 1; i < jury_.size(); ++i)
+    if (violation(i) < violation(binding)) binding = i;
+  return static_cast<Bound>(binding);
+}
+
 // Where the intervals jump at an X, the boundary runs along that X.
 void StabilityRegion::append_vertical_arcs(const std::vector<Piece>& all, const Window& window,
                                            std::vector<BoundaryArc>& arcs) const {
@@ -148,12 +158,7 @@ void StabilityRegion::append_vertical_arcs(const std::vector<Piece>& all, const 
     for (const auto& parts : {difference(left, right), difference(right, left)})
       for (const auto& [lower, upper] : parts) {
         if (upper - lower < 1e-3) continue;  // the inset of a square- or cube-root end
-        const double y = between(lower, upper);
-        const auto violation = [&](std::size_t i) { return std::abs(jury_[i](x, y)); };
-        std::size_t binding = 0;
-        for (std::size_t i = 1; i < jury_.size(); ++i)
-          if (violation(i) < violation(binding)) binding = i;
-        arcs.push_back({static_cast<Bound>(binding), {x, x}, {lower, upper}});
+        arcs.push_back({binding_at(x, between(lower, upper)), {x, x}, {lower, upper}});
       }
   }
 }
@@ -169,7 +174,10 @@ Window StabilityRegion::natural_window(double margin) const {
     }
   }
   box.y_max = std::max(box.y_max, constants_.y_max);  // the apex lies between two samples
-  if (!std::isfinite(box.y_max - box.y_min) || std::max(-box.x_min, box.x_max) > 100) return {-8, 8, -8, 8};
+  const bool ends = by_values_ && std::isfinite(constants_.real_interval);
+  if (!std::isfinite(box.y_max - box.y_min) ||
+      (!ends && std::max(-box.x_min, box.x_max) > 0.9 * whole_line().back()))
+    return {-8, 8, -8, 8};
   const double dx = margin * (box.x_max - box.x_min), dy = margin * (box.y_max - box.y_min);
   return {box.x_min - dx, box.x_max + dx, box.y_min - dy, box.y_max + dy};
 }

@@ -1,23 +1,47 @@
 // What is asked of the region as a whole: its highest point, how far it reaches along the axes, and the best
 // line for Rayleigh damping.
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "analysis/constants.h"
 #include "analysis/gsl/numerics.h"
 #include "analysis/regions/region_pieces.h"
 #include "analysis/regions/stability_region.h"
+#include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
+namespace {
 
-bool StabilityRegion::powers_bounded_at(double x, double y) const {
-  Eigen::Matrix2d a;
-  a << amplification_[0](x, y), amplification_[1](x, y), amplification_[2](x, y), amplification_[3](x, y);
+constexpr double coincidence = 1e-5;  // the apex is known to about 1e-12, a double eigenvalue to its root
+
+bool powers_bounded_2x2(const Eigen::MatrixXd& a) {
   const double mean = a.trace() / 2, half = (a(0, 0) - a(1, 1)) / 2;
   const double separation = std::sqrt(std::abs(half * half + a(0, 1) * a(1, 0)));  // |λ₁ - λ₂| / 2
-  const bool double_root = separation < 1e-5;  // the apex is known to about 1e-12
-  return !double_root || (a - mean * Eigen::Matrix2d::Identity()).norm() < 1e-5;
+  return separation >= coincidence || (a - mean * Eigen::Matrix2d::Identity()).norm() < coincidence;
+}
+
+// Of eigenvalues on the unit circle: those that coincide must have as many eigenvectors.
+bool powers_bounded(const Eigen::MatrixXd& a) {
+  if (a.rows() == 2) return powers_bounded_2x2(a);
+  const Eigen::VectorXcd lambda = a.eigenvalues();
+  for (const std::complex<double> at : lambda) {
+    if (std::abs(at) < 1 - 1e-4) continue;
+    const auto close = [&](std::complex<double> other) { return std::abs(other - at) < 10 * coincidence; };
+    const auto multiplicity = std::count_if(lambda.begin(), lambda.end(), close);
+    const Eigen::MatrixXcd rest = a - at * Eigen::MatrixXcd::Identity(a.rows(), a.rows());
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXcd>(rest).singularValues();
+    if ((values.array() < 100 * coincidence).count() < multiplicity) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool StabilityRegion::powers_bounded_at(double x, double y) const {
+  return powers_bounded(method_.amplification(x, y));
 }
 
 RegionConstants StabilityRegion::find_constants() const {
@@ -26,15 +50,17 @@ RegionConstants StabilityRegion::find_constants() const {
   found.imaginary_interval = critical_step(1, 0);
   for (const Piece& piece : all_pieces_) {
     const StableInterval& top = piece.inner.intervals.back();
-    if (top.upper == infinity) {
-      found.y_max = infinity;
-      found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
-      break;
-    }
-    const auto [x, y] = highest_point(piece);
+    const auto [x, y] = top.upper == infinity ? std::pair{0.0, infinity} : highest_point(piece);
     if (y > found.y_max) found.y_max = y, found.x_at_y_max = x;
   }
-  if (std::isfinite(found.y_max)) found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
+  if (all_pieces_.empty()) found.y_max = 0;
+  // Unbounded, too, where the top ends at a pole or still rises at the end of the line.
+  const bool ends = by_values_ && std::isfinite(found.real_interval);
+  const bool at_the_end = !ends && std::abs(found.x_at_y_max) >= whole_line().back();
+  if (found.y_max > 1e12 || at_the_end) found.y_max = infinity;
+  if (found.y_max == infinity) found.x_at_y_max = std::numeric_limits<double>::quiet_NaN();
+  if (std::isfinite(found.x_at_y_max))
+    found.y_max_attained = powers_bounded_at(found.x_at_y_max, found.y_max);
   found.covers_quadrant = std::any_of(all_pieces_.begin(), all_pieces_.end(), [](const Piece& piece) {
     const StableInterval& top = piece.inner.intervals.back();
     return piece.left <= 0 && piece.right >= whole_line().back() && top.lower <= 0 && top.upper == infinity;
@@ -59,6 +85,15 @@ std::pair<double, double> StabilityRegion::highest_point(const Piece& piece) con
   const auto best = static_cast<std::size_t>(std::max_element(ys.begin(), ys.end()) - ys.begin());
   if (best == 0 || best == samples) return {best == 0 ? piece.left : piece.right, ys[best]};
 
+  if (by_values_) {
+    double left = xs[best - 1], right = xs[best + 1];
+    for (int i = 0; i < 60; ++i) {
+      const double a = right - (right - left) / std::numbers::phi,
+                   b = left + (right - left) / std::numbers::phi;
+      (top(a) < top(b) ? left : right) = top(a) < top(b) ? a : b;
+    }
+    return {between(left, right), top(between(left, right))};
+  }
   const auto bound = static_cast<std::size_t>(piece.inner.intervals.back().upper_bound);
   const BivariatePolynomial slope = jury_[bound].numerator().derivative_x();
   const auto steepness = [&](double x) { return slope(x, top(x)); };

@@ -7,85 +7,13 @@
 
 #include "analysis/constants.h"
 #include "analysis/per_method.h"
+#include "analysis/regions/curve_conditions.h"
 #include "analysis/regions/region_pieces.h"
 
 namespace springstab {
 namespace {
 
-constexpr double cancellation = 1e-14;  // relative to the terms that cancel: a sign below it is not known
-constexpr double neutrality =
-    1e-12;  // a condition violated by less, relative to its terms, counts as neutral
-
-constexpr std::array<Bound, 3> conditions{Bound::complex_pair, Bound::plus_one, Bound::minus_one};
-
-// One of Jury's conditions along a curve.
-struct Condition {
-  Polynomial numerator, denominator;
-  Bound bound;
-
-  Condition(const RationalFunction& f, const Curve& curve, Bound b)
-      : numerator(f.numerator().along(curve.x, curve.y)),
-        denominator(f.denominator().along(curve.x, curve.y)),
-        bound(b) {}
-
-  double operator()(double t) const { return numerator(t) / denominator(t); }
-
-  // -1, 0, +1; zero where the value is below `tolerance` of the terms of the numerator.
-  int sign(double t, double tolerance) const {
-    double size = 0;
-    for (std::size_t i = numerator.c.size(); i-- > 0;) size = size * std::abs(t) + std::abs(numerator.c[i]);
-    const double value = numerator(t);
-    if (std::abs(value) <= tolerance * size) return 0;
-    return (value > 0) == (denominator(t) > 0) ? 1 : -1;
-  }
-
-  // The sign just after t = 0, from the lowest terms; 0 only where the condition is an equality throughout.
-  int sign_after_zero() const {
-    const auto lowest = [](const Polynomial& p) {
-      for (double c : p.c)
-        if (c != 0) return c;
-      return 0.0;
-    };
-    const double n = lowest(numerator), d = lowest(denominator);
-    return n == 0 ? 0 : (n > 0) == (d > 0) ? 1 : -1;
-  }
-};
-
-std::vector<Condition> along(const std::array<RationalFunction, 3>& jury, const Curve& curve) {
-  std::vector<Condition> result;
-  for (std::size_t i = 0; i < jury.size(); ++i) result.emplace_back(jury[i], curve, conditions[i]);
-  return result;
-}
-
-struct Candidate {
-  double t;
-  Bound bound;
-};
-
-// Every t in (t_min, t_max) where some condition may change its sign, ascending.
-std::vector<Candidate> candidates(const std::vector<Condition>& jury, double t_min, double t_max) {
-  std::vector<Candidate> found;
-  for (const Condition& condition : jury)
-    for (const Polynomial* p : {&condition.numerator, &condition.denominator})
-      for (double t : p->real_roots())
-        if (t > t_min && t < t_max) found.push_back({t, condition.bound});
-  std::sort(found.begin(), found.end(), [](const Candidate& a, const Candidate& b) { return a.t < b.t; });
-  return found;
-}
-
-std::vector<RationalFunction> two_by_two(const Method& method) {
-  if (method.size() > 2)
-    throw std::invalid_argument("method '" + method.name() + "' carries " +
-                                std::to_string(method.info().memory) +
-                                " vectors beyond x and v, expected none: Jury's three inequalities decide "
-                                "2x2 matrices");
-  return method.symbolic_step();
-}
-
-std::array<RationalFunction, 3> jury_conditions(const std::vector<RationalFunction>& a) {
-  const RationalFunction trace = a[0] + a[3], determinant = a[0] * a[3] - a[1] * a[2], one = 1.0;
-  return {one - determinant, one - trace + determinant, one + trace + determinant};
-}
+constexpr Eigen::Index largest_exact = 6;  // m up to which the polynomial's conditions serve
 
 }  // namespace
 
@@ -112,28 +40,36 @@ double cosine_point(double left, double right, double angle) {
 }
 
 StabilityRegion::StabilityRegion(const Method& method)
-    : amplification_(two_by_two(method)), jury_(jury_conditions(amplification_)) {
-  all_pieces_ = smooth_pieces(whole_line(), -infinity, infinity);
+    : method_(method),
+      by_values_(method.info().regions_by_values || method.size() > largest_exact),
+      polynomial_(by_values_ ? std::vector<RationalFunction>(4, 0.0) : method.symbolic_step()),
+      jury_(polynomial_.conditions()),
+      matrix_form_(springstab::matrix_form(method, polynomial_)) {
+  std::vector<double> line = whole_line();
+  if (const double interval = critical_step(0, 1); by_values_ && std::isfinite(interval))  // X < twice that
+    for (double& x : line) x *= std::max(1.0, 3 * interval / whole_line().back());
+  all_pieces_ = smooth_pieces(line, -infinity, infinity);
   constants_ = find_constants();
 }
 
 StabilityRegion::StabilityRegion(StabilityRegion&&) noexcept = default;
 StabilityRegion::~StabilityRegion() = default;
 
+CurveConditions StabilityRegion::along(const Curve& curve) const {
+  return by_values_ ? CurveConditions(method_, curve) : CurveConditions(polynomial_, curve);
+}
+
 std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve, double t_min,
                                                               double t_max) const {
-  const std::vector<Condition> jury = along(jury_, curve);
-  std::vector<Candidate> cuts = candidates(jury, t_min, t_max);
+  const CurveConditions conditions = along(curve);
+  std::vector<Candidate> cuts = conditions.candidates(t_min, t_max);
   cuts.insert(cuts.begin(), {t_min, Bound::window});
   cuts.push_back({t_max, Bound::window});
 
   std::vector<StableInterval> found;
   bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const double t = between(cuts[i].t, cuts[i + 1].t);
-    const bool stable = cuts[i].t < cuts[i + 1].t &&
-                        std::all_of(jury.begin(), jury.end(),
-                                    [&](const Condition& c) { return c.sign(t, cancellation) > 0; });
+    const bool stable = cuts[i].t < cuts[i + 1].t && conditions.stable(between(cuts[i].t, cuts[i + 1].t));
     if (stable && touching) {
       found.back().upper = cuts[i + 1].t;
       found.back().upper_bound = cuts[i + 1].bound;
@@ -146,15 +82,12 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
 }
 
 double StabilityRegion::first_exit(const Curve& curve) const {
-  const std::vector<Condition> jury = along(jury_, curve);
-  for (const Condition& condition : jury)
-    if (condition.sign_after_zero() < 0) return 0;
-  const std::vector<Candidate> cuts = candidates(jury, 0, infinity);
-  for (std::size_t i = 0; i < cuts.size(); ++i) {
-    const double t = between(cuts[i].t, i + 1 < cuts.size() ? cuts[i + 1].t : infinity);
-    for (const Condition& condition : jury)
-      if (condition.sign(t, neutrality) < 0) return cuts[i].t;
-  }
+  const CurveConditions conditions = along(curve);
+  const std::vector<Candidate> cuts = conditions.candidates(0, infinity);
+  if (conditions.unstable_after_zero(cuts.empty() ? infinity : cuts.front().t)) return 0;
+  for (std::size_t i = 0; i < cuts.size(); ++i)
+    if (conditions.unstable(between(cuts[i].t, i + 1 < cuts.size() ? cuts[i + 1].t : infinity)))
+      return cuts[i].t;
   return infinity;
 }
 
@@ -197,6 +130,7 @@ StabilityRegion::Column StabilityRegion::column(double x, double y_min, double y
 }
 
 bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
+  if (by_values_ || other.by_values_) return method_ == other.method_;
   return std::equal(jury_.begin(), jury_.end(), other.jury_.begin(),
                     [](const RationalFunction& f, const RationalFunction& g) {
                       return f.numerator() == g.numerator() && f.denominator() == g.denominator();
@@ -204,35 +138,34 @@ bool StabilityRegion::same_conditions(const StabilityRegion& other) const {
 }
 
 std::optional<HalfPlane> StabilityRegion::exact_condition() const {
-  // Entries affine in X and Y stand for one matrix each, free of the order of products; a row of constants
-  // then eliminates x or v.
-  std::array<std::array<double, 3>, 4> entry;
-  for (std::size_t i = 0; i < entry.size(); ++i) {
-    const auto affine = amplification_[i].affine();
-    if (!affine) return std::nullopt;
-    entry[i] = *affine;
-  }
-  const auto constant = [&](std::size_t i) { return entry[i][1] == 0 && entry[i][2] == 0; };
-  if (!(constant(0) && constant(1) && entry[1][0] != 0) && !(constant(2) && constant(3) && entry[2][0] != 0))
+  if (by_values_ || matrix_form_ != MatrixForm::scalar_coefficients || polynomial_.degree() != 2)
     return std::nullopt;
-  for (const Bound bound : {Bound::complex_pair, Bound::plus_one}) {  // these hold on the whole quadrant
-    const auto c = jury_[static_cast<std::size_t>(bound)].affine();
-    if (!c || std::any_of(c->begin(), c->end(), [](double v) { return v < 0; })) return std::nullopt;
+  const auto holds_on_quadrant = [](const std::array<double, 3>& c) {
+    return std::all_of(c.begin(), c.end(), [](double v) { return v >= 0; });
+  };
+  const auto coefficients = affine_coefficients(polynomial_);
+  if (!coefficients || !holds_on_quadrant(coefficients->back())) return std::nullopt;
+  for (const Bound bound : {Bound::complex_pair, Bound::plus_one}) {
+    const auto c = jury_[static_cast<std::size_t>(bound)].numerator().affine();
+    if (!c || !holds_on_quadrant(*c)) return std::nullopt;
   }
-  const auto c = jury_[static_cast<std::size_t>(Bound::minus_one)].affine();
-  if (!c || !((*c)[0] > 0) || (*c)[1] > 0 || (*c)[2] > 0) return std::nullopt;
+  const auto c = jury_[static_cast<std::size_t>(Bound::minus_one)].numerator().affine();
+  if (!c || !((*c)[0] > 0) || !((*c)[2] < 0)) return std::nullopt;
   return HalfPlane{-(*c)[1], -(*c)[2], (*c)[0]};
 }
 
-// Every x in (left.x, right.x) where the structure changes, to the last bit, appended to `breaks`.
+// Every x in (left.x, right.x) where the structure changes, to the last bit (by values to 1e-9), appended to
+// `breaks`.
 void StabilityRegion::find_breaks(Column left, const Column& right, double y_min, double y_max,
                                   std::vector<double>& breaks) const {
+  const double width = by_values_ ? 1e-9 * std::max(1.0, std::abs(right.x)) : 1e-16;
   for (int i = 0; !left.same_structure(right); ++i) {
+    if (i == 16 && by_values_) return;  // near X = 0, where a radius is 1 to rounding
     if (i == 16)
       throw std::runtime_error("the stability boundary near X = " + std::to_string(left.x) +
                                " could not be resolved");
     Column before = left, after = right;
-    while (after.x - before.x > 1e-16) {
+    while (after.x - before.x > width) {
       const double x = between(before.x, after.x);
       if (x == before.x || x == after.x) break;
       Column middle = column(x, y_min, y_max);
@@ -266,18 +199,7 @@ std::vector<StabilityRegion::Piece> StabilityRegion::smooth_pieces(const std::ve
 }
 
 bool StabilityRegion::closed_segment_is_stable(double x0, double y0, double x1, double y1) const {
-  const Curve segment{{{x0, x1 - x0}}, {{y0, y1 - y0}}};
-  for (const Condition& condition : along(jury_, segment)) {
-    const Polynomial& n = condition.numerator;
-    const Polynomial& d = condition.denominator;
-    const Polynomial minus_one{{-1.0}};
-    std::vector<double> extremes = (n.derivative() * d + minus_one * n * d.derivative()).real_roots();
-    extremes.push_back(0);
-    extremes.push_back(1);
-    for (double t : extremes)
-      if (t >= 0 && t <= 1 && !(condition(t) >= -10 * neutrality)) return false;
-  }
-  return true;
+  return along({{{x0, x1 - x0}}, {{y0, y1 - y0}}}).hold_on_unit_interval();
 }
 
 const StabilityRegion& stability_region(const Method& method) {

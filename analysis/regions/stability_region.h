@@ -1,13 +1,13 @@
 // The stable region of a method in the X-Y plane, X = hd and Y = h²k, and its exact boundary.
 //
-// A 2x2 matrix with trace T and determinant Δ has both eigenvalues inside the unit disk iff Jury's three
-// inequalities hold (Jury 1964; for real coefficients):
-//     1 - Δ > 0   (equality: a complex pair on the unit circle, or λ₁λ₂ = 1),
-//     1 - T + Δ > 0   (equality: λ = 1),
-//     1 + T + Δ > 0   (equality: λ = -1).
-// T and Δ are the rational functions that the method's own step gives. Along any polynomial curve
-// (X(t), Y(t)) the three are rational in t, so where they change sign is a polynomial root problem:
-// columns, damping lines and the path of one mode as h grows are all such curves. No raster is involved.
+// Three conditions on the matrix A(X, Y) that the method's own step gives say where stability may end
+// (characteristic.h): a complex pair on the unit circle, λ = 1, λ = -1. Along any polynomial curve
+// (X(t), Y(t)) they are rational in t, so where they vanish is a polynomial root problem: columns, damping
+// lines and the path of one mode as h grows are all such curves. No raster is involved. Between two roots
+// the signs of the three decide for the 2x2 matrix of a method that carries nothing, else the eigenvalues
+// at one point do. Methods of very many stages, and those that carry more than four vectors beyond x and v,
+// are judged by sampled eigenvalues (sampled_curve.h). (A method with eigenvalues that are 0, 1 or -1 for all
+// X and Y is judged by the others.)
 //
 //     const StabilityRegion& region = stability_region("rk4");
 //     const double reach = region.constants().imaginary_interval;  // 2 √2: undamped modes up to ωh
@@ -22,22 +22,18 @@
 #include <vector>
 
 #include "analysis/method.h"
-#include "analysis/regions/polynomial.h"
+#include "analysis/regions/characteristic.h"
+#include "analysis/regions/matrix_form.h"
 
 namespace springstab {
 
-/// What ends a stable interval: one of Jury's conditions, or the window that was asked for.
+/// What ends a stable interval: one of the three conditions, or the window that was asked for.
 enum class Bound { complex_pair, plus_one, minus_one, window };
 
 /// t in (lower, upper), open; may reach to ±∞.
 struct StableInterval {
   double lower, upper;
   Bound lower_bound, upper_bound;
-};
-
-/// A plane curve t -> (x(t), y(t)).
-struct Curve {
-  Polynomial x, y;
 };
 
 /// Axis-aligned window of the X-Y plane.
@@ -77,14 +73,15 @@ struct DampingLine {
   double reach;  // 0 where no line leaves (x0, 0) into the region; ∞ where nothing ends it
 };
 
+class CurveConditions;
+
 class StabilityRegion {
  public:
-  /// Throws std::invalid_argument for a method that carries more than x and v.
   explicit StabilityRegion(const Method& method);
   StabilityRegion(StabilityRegion&&) noexcept;
   ~StabilityRegion();
 
-  /// Maximal open intervals of t in (t_min, t_max) along which both |λ| < 1, ascending.
+  /// Maximal open intervals of t in (t_min, t_max) along which every |λ| < 1, ascending.
   std::vector<StableInterval> stable_intervals(const Curve& curve, double t_min, double t_max) const;
 
   /// The first t > 0 at which a mode that is stable or neutral just after t = 0 turns unstable:
@@ -107,15 +104,18 @@ class StabilityRegion {
 
   DampingLine damping_line(double x0) const;
 
-  /// Whether every point from (x0, y0) to (x1, y1), ends included, is stable or neutral: Jury's conditions
-  /// hold to 1e-11 at all their extremes between.
+  /// Whether every point from (x0, y0) to (x1, y1), ends included, is stable or neutral: the
+  /// conditions hold to 1e-11 at all their extremes between, or |λ| <= 1 to 1e-10 between all their roots.
   bool closed_segment_is_stable(double x0, double y0, double x1, double y1) const;
 
-  /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and 1 + T + Δ >= 0 is a half-plane that is
-  /// exact for matrices: a method of one force a step, whose λ² - Tλ + Δ is affine in hD' and h²K'. Then for
-  /// any symmetric positive semidefinite D', K', which need not commute, the method is stable for
-  /// x hD' + y h²K' < bound and, as λ² - Tλ + Δ has a negative eigenvalue at -1 and none at -∞, unstable
-  /// beyond (theory: symplectic Euler's limit is the root of λ_max(2hD' + h²K') = 4).
+  /// How the method's eigenvalues on matrices follow from this region.
+  MatrixForm matrix_form() const { return matrix_form_; }
+
+  /// Where only λ = -1 ends stability in the quadrant X, Y >= 0, and the step has scalar coefficients of
+  /// degree 2, so that its condition is a half-plane. Then for any symmetric positive semidefinite D', K',
+  /// which need not commute, the method is stable for λ_max(x hD' + y h²K') < bound and, as Q(λ) has a
+  /// negative eigenvalue at -1 and none at -∞, unstable beyond (theory: symplectic Euler's limit is the root
+  /// of λ_max(2hD' + h²K') = 4). y > 0; x < 0 where damping lets the step grow.
   std::optional<HalfPlane> exact_condition() const;
 
   /// Area inside the window, to about 12 digits. These four throw std::invalid_argument for an empty window.
@@ -144,9 +144,15 @@ class StabilityRegion {
   bool powers_bounded_at(double x, double y) const;
   std::pair<double, double> highest_point(const Piece& piece) const;
 
-  std::vector<RationalFunction> amplification_;  // 2x2, row by row
-  std::array<RationalFunction, 3> jury_;         // indexed by Bound
-  std::vector<Piece> all_pieces_;                // of the whole plane
+  CurveConditions along(const Curve& curve) const;
+  Bound binding_at(double x, double y) const;  // of a point of the boundary
+
+  Method method_;
+  bool by_values_;  // not by the polynomial
+  CharacteristicPolynomial polynomial_;
+  std::array<RationalFunction, 3> jury_;  // indexed by Bound
+  MatrixForm matrix_form_;
+  std::vector<Piece> all_pieces_;  // of the whole plane
   RegionConstants constants_;
 };
 

@@ -44,14 +44,6 @@ void refine(const StructuralMatrices& s, double rate, Modes& modes) {
 
 }  // namespace
 
-// A function of the generator commutes with it; symplectic Euler's matrix does not.
-bool has_stability_function(const Method& method) {
-  if (method.size() > 2) return false;
-  const double x = 0.3, y = 0.7;
-  const Eigen::Matrix2d a = method.amplification(x, y), c{{0, 1}, {-y, -x}};
-  return (a * c - c * a).norm() <= 1e-12 * a.norm();
-}
-
 std::optional<Generator> dimensionless_generator(const StructuralMatrices& s) {
   const Eigen::Index n = s.size();
   if (n > generator_limit) return std::nullopt;
@@ -146,8 +138,8 @@ std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::c
 
 std::optional<double> critical_step(const Method& method, const std::vector<std::complex<double>>& modes,
                                     double largest) {
-  if (!has_stability_function(method)) return std::nullopt;
   const StabilityRegion& region = stability_region(method);
+  if (region.matrix_form() != MatrixForm::stability_function) return std::nullopt;
   double h = std::numeric_limits<double>::infinity();
   if (largest > 0)
     for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));

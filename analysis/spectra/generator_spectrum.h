@@ -47,9 +47,6 @@ double growth_rate(const std::vector<std::complex<double>>& modes);
 std::vector<std::complex<double>> modes_near(const StructuralMatrices& s, std::complex<double> shift,
                                              Eigen::Index count, const ArpackOptions& options = {});
 
-/// Whether the method's eigenvalues on a mode μ are R(hμ).
-bool has_stability_function(const Method& method);
-
 /// The largest H such that every 0 < h < H keeps all these modes stable or neutral, but those that grow by
 /// themselves. It is for methods with a stability function, and an estimate, since the eigenvalues carry
 /// rounding. Nothing for other methods, and where it hinges on a real part that is 0 or, with `largest` the

@@ -2,16 +2,44 @@
 
 #include <filesystem>
 #include <iterator>
+#include <sstream>
 #include <system_error>
-
-#include "analysis/method.h"
 
 namespace springstab {
 
 std::string method_names() {
   std::string names;
-  for (const Method& each : all_methods()) names += (names.empty() ? "" : ", ") + each.name();
+  for (const Method& each : methods_of("all")) names += (names.empty() ? "" : ", ") + each.name();
   return names;
+}
+
+Option methods_option(std::string& names) {
+  return Option("--methods", &names,
+                "all, or names with commas, which may have parameters: newmark:beta=0.25,gamma=0.5")
+      .shown_as("all|LIST");
+}
+
+std::vector<Method> methods_of(const std::string& names) {
+  std::vector<Method> methods = all_methods();
+  if (names.empty()) return methods;
+  if (names == "all") {
+    methods.insert(methods.end(), more_methods().begin(), more_methods().end());
+    return methods;
+  }
+  // A comma ends a name unless what follows is key=value, a further parameter.
+  std::vector<std::string> words;
+  std::istringstream list(names);
+  for (std::string word; std::getline(list, word, ',');) {
+    const bool parameter = word.find(':') == std::string::npos && word.find('=') != std::string::npos;
+    if (parameter && !words.empty()) {
+      words.back() += "," + word;
+    } else {
+      words.push_back(word);
+    }
+  }
+  methods.clear();
+  for (const std::string& word : words) methods.emplace_back(word);
+  return methods;
 }
 
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {

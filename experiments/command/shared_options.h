@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
 #include "experiments/command/subcommand_list.h"
 #include "experiments/inputs/subject.h"
 
@@ -11,6 +12,11 @@ namespace springstab {
 
 /// Every method's name, with commas.
 std::string method_names();
+
+/// --methods: "all", or names with commas; empty for those shown where none is named.
+Option methods_option(std::string& names);
+/// What --methods says. Throws std::invalid_argument for an unknown one.
+std::vector<Method> methods_of(const std::string& names);
 
 /// INPUT and what belongs to it, then `more`.
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);

@@ -18,7 +18,8 @@
 //       };
 //     };
 //
-// `step` depends on the state, on h and on the system alone: the members of Steps are workspace. What a
+// One with parameters has a constructor from Parameters (parameters.h), and its name is the text it was made
+// from. `step` depends on the state, on h and on the system alone: the members of Steps are workspace. What a
 // method carries from step to step lies in state.memory. Optional members of Steps:
 //     Steps(const MyEuler&)                        takes over the description's parameters,
 //     start(system, h, state)                      fills state.memory before the first step,
@@ -45,6 +46,7 @@ struct MethodInfo {
   bool linearized = false;  // an explicit method over forces frozen to a linear system (paper §4)
   int memory = 0;           // vectors carried beyond x and v
   StepChange when_h_changes = StepChange::nothing;
+  bool regions_by_values = false;  // so many stages that a formula in powers of X and Y has lost its digits
 };
 
 template <class Description, class V>

@@ -1,0 +1,58 @@
+// The backward differentiation formula of order 2, which carries the state before, u₋ = (x₋, v₋):
+//     u⁺ = (4u - u₋)/3 + (2h/3) u'⁺,   u' = (v, a(x, v)),
+// with one Newton step from v⁺ = 2v - v₋, for Δ = v⁺ less that, g = 2h/3 and forces and derivatives there:
+//     (1 + gD' + g²K') Δ = (4v - v₋)/3 + g a - (2v - v₋).
+// The state before the first one is chosen so that the first step is one of implicit Euler, whose error in a
+// single step does not lower the order.
+#pragma once
+
+#include "solvers/methods/implicit_euler.h"
+#include "solvers/methods/method_info.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+struct Bdf2 {
+  MethodInfo info() const { return {"bdf2", "BDF2", 2, true, false, 2, StepChange::restart}; }
+  template <class V>
+  class Steps;
+};
+
+template <class V>
+class Bdf2::Steps {
+ public:
+  template <Linearizable<V> System>
+  void start(System& system, double h, State<V>& state) {
+    State<V> next{state.x, state.v};
+    ImplicitEuler::Steps<V> first;
+    if (first.step(system, h, next) != StepStatus::done)
+      next.x = state.x + h * state.v;  // the step will fail
+    state.memory[0] = 2.0 * state.x - next.x;
+    state.memory[1] = 2.0 * state.v - next.v;
+  }
+
+  template <Linearizable<V> System>
+  StepStatus step(System& system, double h, State<V>& state) {
+    before_.resize(2);
+    const double g = 2 * h / 3;
+    v_ = 2.0 * state.v - state.memory[1];
+    x_ = (4. / 3) * state.x - (1. / 3) * state.memory[0] + g * v_;
+    system.acceleration(x_, v_, a_);
+    system.linearize(x_, v_, linear_);
+    a_ = (4. / 3) * state.v - (1. / 3) * state.memory[1] + g * a_ - v_;
+    const SolveReport solved = linear_->solve_shifted({1, g, g * g}, a_, change_);
+    if (solved.status != StepStatus::done) return solved.status;
+    x_ = x_ + g * change_;
+    v_ = v_ + change_;
+    before_[0] = state.x;
+    before_[1] = state.v;
+    return commit(state, x_, v_, before_);
+  }
+
+ private:
+  Linearization<V> linear_ = {};
+  V x_, v_, a_, change_;
+  std::vector<V> before_;
+};
+
+}  // namespace springstab

@@ -230,10 +230,10 @@ void check_resumed(const Description& description) {
   const StepPlan plan{h, 200};
   BOOST_TEST((simulate(system, *method.stepper(), plan, asleep, whole).status == StepStatus::done));
 
-  CheckpointFile file(folder.path().string(), Json{{"method", method.name()}}, false, true);
+  CheckpointFile file(folder.path().string(), Json{{"method", method.name()}}, {}, true);
   simulate(system, *method.stepper(), plan, asleep, part, [&](const RunSoFar& run, const State<Vector>& s) {
     if (run.steps < 90 || !run.at_checkpoint) return true;
-    file.save({run, s, {}});
+    file.save([&] { return KeptRun{run, s, {}}; });
     return false;
   });
   std::optional<KeptRun> kept = file.read();

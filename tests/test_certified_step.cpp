@@ -127,7 +127,7 @@ std::vector<double> certified_shares(const Certify& certify, std::string_view me
       const double certified = certify(s, method).value_or(0);
       BOOST_TEST(certified <= truth);
       const auto estimate = critical_step(method, generator_spectrum(s).value());
-      if (known || method == "rk4") BOOST_TEST(estimate.value() == truth, tolerance(1e-5));
+      if (estimate && (known || method == "rk4")) BOOST_TEST(*estimate == truth, tolerance(1e-5));
       if (certified > 0) BOOST_TEST(largest_modulus(transition_matrix(s, method, certified)) <= 1 + 1e-6);
       shares.push_back(truth > 0 ? certified / truth : 1);
     }
@@ -992,6 +992,8 @@ BOOST_AUTO_TEST_CASE(symplectic_euler_has_a_limit_with_negative_damping) {
   };
   const MethodLimits mixed = limits({4, 1}, {-0.1, 0.1});
   BOOST_TEST(mixed.h_max.value() == -0.1 + std::sqrt(4.01), tolerance(1e-9));
+  // Growth at the structure's own pace asks for its mirror image's step: 2h|d| + h²k < 4 of the stiff motion.
+  BOOST_TEST(mixed.recommended.value() <= (-0.1 + std::sqrt(16.01)) / 4);
   for (const Eigen::Vector2d& d : {Eigen::Vector2d(-0.4, -0.1), Eigen::Vector2d(-0.1, -0.1)})
     BOOST_TEST((limits({4, 1}, d).status == LimitStatus::unlimited));
 }

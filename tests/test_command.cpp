@@ -226,7 +226,8 @@ BOOST_AUTO_TEST_CASE(growth_is_followed_by_every_method) {
   BOOST_TEST(limits.json().at("growth_rate").get<double>() == 1, boost::test_tools::tolerance(1e-14));
   BOOST_TEST((*this)("limits --stiffness saddle.mtx").out.find("the fastest at 1 1/s") != std::string::npos);
   int recommended = 0;
-  for (const auto& method : limits.json().at("methods"))
+  const auto report = limits.json();  // outlives the loop
+  for (const auto& method : report.at("methods"))
     for (const std::string step : {"", " --step 0.01", " --step 0.25"})
       BOOST_TEST_CONTEXT(method.at("name") << step) {
         if (step.empty() && method.at("status") == "none") continue;

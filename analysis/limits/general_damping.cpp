@@ -23,6 +23,16 @@ double root(double a, double b, double c, const ModePoint& p) {
   return 2 * c / (linear + discriminant);
 }
 
+// The step to which oscillations that grow by themselves are followed, not outgrown: that of their mirror
+// images in time, which decay.
+double following_step(const Method& method, const std::vector<std::complex<double>>& modes) {
+  double h = infinity;
+  for (const std::complex<double> mu : modes)
+    if (mu.real() > 0 && mu.imag() > 0)
+      h = std::min(h, stability_region(method).critical_step(std::norm(mu), 2 * mu.real()));
+  return h;
+}
+
 StructuralMatrices stiffened(const StructuralMatrices& s, const Stiffening& stiffening) {
   StructuralMatrices stiffer = s;
   stiffer.stiffness *= stiffening.factor;
@@ -213,7 +223,7 @@ void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
     }
     if (!h || !(*h > 0)) return;
     steps.push_back(*h);
-    least = std::min(least, *h);
+    least = std::min({least, *h, following_step(method, *spectra_[i])});
   }
   if (steps.size() < all.size()) return;
   limits.h_max = steps.front();

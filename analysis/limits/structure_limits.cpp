@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/constants.h"
 #include "analysis/limits/transient_growth.h"
 
 namespace springstab {
@@ -43,7 +44,8 @@ MethodLimits StructureLimits::compute(const Method& method) {
   GeneralDamping* const general = this->general();
   MethodLimits limits =
       general ? general->limits(method) : method_limits(method, k0(), structure_->damping, options_.safety);
-  if (limits.status == LimitStatus::unlimited) limits.recommended = options_.max_step;
+  if (limits.status == LimitStatus::unlimited && options_.max_step)
+    limits.recommended = std::min(limits.recommended.value_or(infinity), *options_.max_step);
   if (!options_.certify) return limits;
   if (structure_->every_pose)
     if (std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {

@@ -14,7 +14,6 @@ namespace springstab {
 namespace {
 
 constexpr double rigid_rate = 1e-6, undamped = 1e-9;  // of the generator's rate and of the largest |μ|
-constexpr double uncertain = 1e-7;                    // real parts below it, of the largest |μ|, are refined
 constexpr double accurate = 1e-6;
 
 using Modes = std::vector<std::complex<double>>;
@@ -24,7 +23,7 @@ void refine(const StructuralMatrices& s, double rate, Modes& modes) {
   double largest = 0;
   for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
   const auto in_doubt = [&](std::complex<double> mu) {
-    return std::abs(mu.real()) <= uncertain * largest || std::abs(mu) <= rigid_rate * rate;
+    return std::abs(mu.real()) <= undamped * largest || std::abs(mu) <= rigid_rate * rate;
   };
   if (std::none_of(modes.begin(), modes.end(), in_doubt)) return;
   const EigenvalueRefinement refinement(s, rate);

@@ -13,6 +13,7 @@ using ComplexVector = Eigen::VectorXcd;
 
 constexpr int most_iterations = 12;
 constexpr double settled = 1e-12;
+constexpr double shape = 1e3;  // roundings in the shape of a motion, among many that nothing resists
 constexpr double beside_it = 1 + 1e-12;  // where P(μ) has an inverse
 
 /// An unevaluated sum of two doubles: twice the precision (Dekker 1971, Knuth's sum).
@@ -104,7 +105,7 @@ bool EigenvalueRefinement::is_rigid(std::complex<double> mu, const Eigen::Vector
       (stiffness_ * x).norm() <= round_off * (stiffness_.cwiseAbs() * x.cwiseAbs()).norm())
     return true;
   return std::norm(mu) <= 2 * round_off * stiffness_.norm() &&
-         (damping_ * x).norm() <= 2 * round_off * damping_.norm() * x.norm();
+         (damping_ * x).norm() <= shape * round_off * damping_.norm() * x.norm();
 }
 
 RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const {

@@ -119,8 +119,8 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
     const Eigen::MatrixXcd slope = 2.0 * mu * mass_ + damping_;
     const Eigen::PartialPivLU<Eigen::MatrixXcd> factor(p);
     for (int again = 0; again < (i == 0 ? 3 : 1); ++again) {
-      x = factor.solve(slope * x).eval().normalized();
-      y = symmetric_ ? x : factor.transpose().solve(slope.transpose() * y).eval().normalized();
+      x = factor.solve(mass_ * x).eval().normalized();
+      y = symmetric_ ? x : factor.transpose().solve(mass_ * y).eval().normalized();
     }
     if (!x.allFinite() || !y.allFinite()) break;
     if (is_rigid(mu, x, y)) return {0, true};

@@ -135,7 +135,8 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
     if (std::abs(mu.real()) <= unknown) return {{0, start.imag()}};
     if (std::abs(change.real()) <= settled * std::abs(mu.real())) return {rate_ * mu};
   }
-  return {{0, std::abs(start)}};
+  // One of a cluster that did not settle, as of motions that nothing resists.
+  return {{0, std::abs(start)}, std::abs(start) <= 1e-6 * rate_};
 }
 
 }  // namespace springstab

@@ -13,6 +13,7 @@ using ComplexVector = Eigen::VectorXcd;
 
 constexpr int most_iterations = 12;
 constexpr double settled = 1e-12;
+constexpr double shape = 1e3;  // roundings in the shape of a motion, among many that nothing resists
 constexpr double beside_it = 1 + 1e-12;  // where P(μ) has an inverse
 
 /// An unevaluated sum of two doubles: twice the precision (Dekker 1971, Knuth's sum).
@@ -104,7 +105,7 @@ bool EigenvalueRefinement::is_rigid(std::complex<double> mu, const Eigen::Vector
       (stiffness_ * x).norm() <= round_off * (stiffness_.cwiseAbs() * x.cwiseAbs()).norm())
     return true;
   return std::norm(mu) <= 2 * round_off * stiffness_.norm() &&
-         (damping_ * x).norm() <= 2 * round_off * damping_.norm() * x.norm();
+         (damping_ * x).norm() <= shape * round_off * damping_.norm() * x.norm();
 }
 
 RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const {
@@ -118,8 +119,8 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
     const Eigen::MatrixXcd slope = 2.0 * mu * mass_ + damping_;
     const Eigen::PartialPivLU<Eigen::MatrixXcd> factor(p);
     for (int again = 0; again < (i == 0 ? 3 : 1); ++again) {
-      x = factor.solve(slope * x).eval().normalized();
-      y = symmetric_ ? x : factor.transpose().solve(slope.transpose() * y).eval().normalized();
+      x = factor.solve(mass_ * x).eval().normalized();
+      y = symmetric_ ? x : factor.transpose().solve(mass_ * y).eval().normalized();
     }
     if (!x.allFinite() || !y.allFinite()) break;
     if (is_rigid(mu, x, y)) return {0, true};
@@ -134,7 +135,8 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
     if (std::abs(mu.real()) <= unknown) return {{0, start.imag()}};
     if (std::abs(change.real()) <= settled * std::abs(mu.real())) return {rate_ * mu};
   }
-  return {{0, std::abs(start)}};
+  // One of a cluster that did not settle, as of motions that nothing resists.
+  return {{0, std::abs(start)}, std::abs(start) <= 1e-6 * rate_};
 }
 
 }  // namespace springstab

@@ -17,6 +17,7 @@
 #include "analysis/proofs/step_magnitude.h"
 #include "analysis/spectra/generator_spectrum.h"
 #include "analysis/spectra/rigid_motions.h"
+#include "analysis/spectra/spectrum.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/linear/dense_solvers.h"
 #include "solvers/methods/explicit_runge_kutta.h"
@@ -171,7 +172,7 @@ BOOST_AUTO_TEST_CASE(symplectic_eulers_limit_is_the_dense_truth) {
 
 // However little ARPACK may do: what does not converge is no step, what converges is the truth. The largest
 // eigenvalues of a chain lie close.
-BOOST_AUTO_TEST_CASE(unconverged_eigenvalues_never_become_a_step) {
+BOOST_AUTO_TEST_CASE(unconverged_eigenvalues_never_become_a_step, *boost::unit_test::label("slow")) {
   RandomNets random(20);
   SpringNet chain;
   for (int i = 0; i <= 60; ++i) {
@@ -212,7 +213,7 @@ BOOST_AUTO_TEST_CASE(unconverged_eigenvalues_never_become_a_step) {
 }
 
 // K and D of diagonal matrices are proved by their diagonals alone, whatever their size.
-BOOST_AUTO_TEST_CASE(too_many_unknowns_to_factorize_is_the_reason_given) {
+BOOST_AUTO_TEST_CASE(too_many_unknowns_to_factorize_is_the_reason_given, *boost::unit_test::label("slow")) {
   const Eigen::Index n = DefinitenessProof::factorization_limit + 1;
   std::vector<double> k(n, 1), d(n, 1);
   k[0] = 100, d[1] = 10;
@@ -506,7 +507,7 @@ BOOST_AUTO_TEST_CASE(certified_steps_are_sharp_where_dampers_resist_what_springs
 // Where every mode loses 1e-10 of its size in a step, which rounding does not hide beside 1e-9 of the fastest
 // rate, nearly the largest step
 // is proved.
-BOOST_AUTO_TEST_CASE(a_lyapunov_matrix_proves_what_polygons_do_not) {
+BOOST_AUTO_TEST_CASE(a_lyapunov_matrix_proves_what_polygons_do_not, *boost::unit_test::label("slow")) {
   for (const std::string_view method : {"explicit-euler", "rk2", "rk4"}) {
     int i = 0;
     const auto any = [&](RandomNets& random) {
@@ -586,6 +587,7 @@ BOOST_AUTO_TEST_CASE(magnitudes_do_not_cancel) {
   BOOST_TEST((*step_magnitude(Subtracting(), k, d))(1, 1) == 1.5);
 }
 
+// Nor all that is: not a step in which a mode hardly damped decays by no more than rounding.
 BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {
   RandomNets random(14);
   int proved = 0, tried = 0;
@@ -594,8 +596,10 @@ BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {
       for (const std::string_view method : {"explicit-euler", "rk2", "rk4"})
         if (const auto h = critical_step(method, generator_spectrum(s).value())) {
           const LyapunovSteps steps(s);
-          proved += steps.proves(method, 0.99 * *h);
-          ++tried;
+          if (*h * std::sqrt(stiffest_mode(s).value) > 1e-3) {
+            proved += steps.proves(method, 0.99 * *h);
+            ++tried;
+          }
           for (const double above : {1 + 1e-6, 1.001, 1.5}) BOOST_TEST(!steps.proves(method, above * *h));
         }
     }
@@ -726,7 +730,7 @@ BOOST_AUTO_TEST_CASE(a_half_plane_is_left_where_its_inequality_fails) {
 }
 
 // Above the size of dense eigenvalues the truth lies between what is proved and what is estimated.
-BOOST_AUTO_TEST_CASE(estimates_of_large_sheets_enclose_the_truth) {
+BOOST_AUTO_TEST_CASE(estimates_of_large_sheets_enclose_the_truth, *boost::unit_test::label("slow")) {
   RandomNets random(16);
   int estimates = 0;
   for (int i = 0; i < 2; ++i) BOOST_TEST_CONTEXT("sheet " << i) {

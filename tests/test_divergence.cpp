@@ -16,7 +16,7 @@ BOOST_AUTO_TEST_SUITE(divergence)
 using namespace springstab;
 
 // The least factor whose recommended step is h: recommended_step undoes it.
-BOOST_AUTO_TEST_CASE(the_safety_for_a_step_recommends_that_step) {
+BOOST_AUTO_TEST_CASE(the_safety_for_a_step_recommends_that_step, *boost::unit_test::label("slow")) {
   for (const char* method : {"explicit-euler", "rk4"}) {
     BOOST_TEST_CONTEXT(method) {
       const StabilityRegion& region = stability_region(method);
@@ -42,7 +42,7 @@ BOOST_AUTO_TEST_CASE(the_safety_for_a_step_recommends_that_step) {
 }
 
 // A frozen cloth diverges above its limit and nowhere below; a hardly moving scene does as its linear system.
-BOOST_AUTO_TEST_CASE(a_cloth_leaves_its_limits_where_theory_says) {
+BOOST_AUTO_TEST_CASE(a_cloth_leaves_its_limits_where_theory_says, *boost::unit_test::label("slow")) {
   SceneDescription description;
   description.geometry = Grid{4, 4};
   description.pins.kind = Pins::Kind::first_row;

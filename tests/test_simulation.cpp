@@ -331,7 +331,8 @@ BOOST_AUTO_TEST_CASE(a_divergence_is_undone_back_to_the_checkpoint) {
 
 // What an observer sees at a checkpoint is all that there is: from each of them another scene goes on to the
 // same bits, also across divergences that are undone and steps that are halved.
-BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_checkpoint_as_if_it_had_not_stopped) {
+BOOST_AUTO_TEST_CASE(a_run_goes_on_from_any_checkpoint_as_if_it_had_not_stopped,
+                     *boost::unit_test::label("slow")) {
   constexpr double duration = 0.4;
   const StepPolicy shorter = [](const SimulationResult& so_far, const State<Vector>&,
                                 const StepPlan& failed) {
@@ -467,6 +468,25 @@ BOOST_AUTO_TEST_CASE(a_scene_holds_only_what_it_has) {
 
 // At Y = 4/1.5 symplectic Euler's energy norm may grow √((1 + √Y/2)/(1 - √Y/2)) = 3.15-fold, which is no
 // divergence.
+BOOST_AUTO_TEST_CASE(a_linear_system_does_not_diverge_at_its_recommended_step) {
+  for (const double ratio : {0.02, 0.5, 0.9, 1.0}) {
+    SparseMatrix stiffness(2, 2);
+    stiffness.insert(0, 0) = 100;
+    stiffness.insert(1, 1) = 100 * ratio;
+    Model model(std::make_unique<MatrixSystem>(prepare(stiffness)));
+    for (const char* name : {"rk4", "implicit-euler", "symplectic-euler", "linearized-rk4"})
+      BOOST_TEST_CONTEXT(name << ", softer by " << ratio) {
+        StepChooser chooser(model, {.method = name, .duration = 30, .max_step = 0.1});
+        const StepPlan plan = chooser.first_plan().value();
+        State<Vector> state = model.initial_state();
+        const SimulationResult result = simulate(model.system(), *chooser.method().stepper(), plan,
+                                                 chooser.watch(state), state, {}, chooser.policy());
+        BOOST_TEST((result.status == StepStatus::done));
+        BOOST_TEST(result.steps == plan.steps);
+      }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(the_watch_allows_for_what_stable_steps_may_grow) {
   BOOST_TEST(tightened({}, 1).slack == 3);
   BOOST_TEST(tightened({}, 5).slack == 5);

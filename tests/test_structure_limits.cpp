@@ -80,7 +80,7 @@ Structure structure_of_scene(const Cloth& cloth) {
 
 BOOST_AUTO_TEST_SUITE(structure_limits)
 
-BOOST_AUTO_TEST_CASE(numbers_equal_those_of_the_command) {
+BOOST_AUTO_TEST_CASE(numbers_equal_those_of_the_command, *boost::unit_test::label("slow")) {
   const Command command;
   const auto report = [&](const std::string& scene) {
     command.file("scene.json", scene);

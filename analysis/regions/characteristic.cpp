@@ -139,14 +139,14 @@ CharacteristicPolynomial::CharacteristicPolynomial(const std::vector<RationalFun
     : coefficients_(without_constant_eigenvalues(characteristic_of(matrix))),
       conditions_(conditions_of(coefficients_)) {}
 
-double CharacteristicPolynomial::radius(double x, double y) const {
+Eigen::VectorXd CharacteristicPolynomial::moduli(double x, double y) const {
   const auto n = static_cast<Eigen::Index>(degree());
   Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(n, n);
   companion.diagonal(-1).setOnes();
   for (Eigen::Index i = 0; i < n; ++i)
     companion(i, n - 1) = -coefficients_[static_cast<std::size_t>(i)](x, y);
-  if (!companion.allFinite()) return std::numeric_limits<double>::infinity();
-  return companion.eigenvalues().cwiseAbs().maxCoeff();
+  if (!companion.allFinite()) return Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+  return companion.eigenvalues().cwiseAbs();
 }
 
 // The resultant of p and its derivative, by Sylvester's matrix.

@@ -11,6 +11,7 @@
 // Includes polynomial.h alone.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -36,8 +37,9 @@ class CharacteristicPolynomial {
   /// In the order of `enum class Bound`.
   const std::array<RationalFunction, 3>& conditions() const { return conditions_; }
 
-  /// The largest |λ| of those left; ∞ at a pole.
-  double radius(double x, double y) const;
+  /// |λ| of those left; all ∞ at a pole.
+  Eigen::VectorXd moduli(double x, double y) const;
+  double radius(double x, double y) const { return moduli(x, y).maxCoeff(); }
 
   /// Along a curve on which the first condition vanishes identically, as on X = 0 for symmetric multistep
   /// methods, whose roots come in reciprocal pairs: zero where two of the roots meet. Of a palindromic

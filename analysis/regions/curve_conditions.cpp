@@ -85,6 +85,20 @@ bool CurveConditions::unstable(double t) const {
                      [&](const Condition& c) { return c.sign(t, neutrality) < 0; });
 }
 
+// Of two, both are outside where 1 - T + Δ and 1 + T + Δ are negative, as one is above 1 and one below -1, or
+// where these are positive and 1 - Δ is negative.
+bool CurveConditions::several_unstable(double t) const {
+  if (!jury()) {
+    const Eigen::VectorXd moduli = polynomial_->moduli(curve_.x(t), curve_.y(t));
+    return (moduli.array() > 1 + neutral_radius).count() > 1;
+  }
+  const auto sign = [&](Bound bound) {
+    return conditions_[static_cast<std::size_t>(bound)].sign(t, neutrality);
+  };
+  const int plus = sign(Bound::plus_one), minus = sign(Bound::minus_one);
+  return (plus < 0 && minus < 0) || (plus > 0 && minus > 0 && sign(Bound::complex_pair) < 0);
+}
+
 bool CurveConditions::unstable_after_zero(double first) const {
   if (!jury()) {
     const double t = between(0, first);

@@ -48,7 +48,9 @@ class CurveConditions {
   bool stable(double t) const;
   /// Whether some |λ| > 1 at t, by more than rounding.
   bool unstable(double t) const;
-  /// The same just after t = 0; `first` is the first candidate, or ∞.
+  /// Whether more than one |λ| > 1 at t, by more than rounding. Not for sampled conditions.
+  bool several_unstable(double t) const;
+  /// Whether some |λ| > 1 just after t = 0; `first` is the first candidate, or ∞.
   bool unstable_after_zero(double first) const;
   /// Whether no |λ| > 1 for t in [0, 1], by more than rounding.
   bool hold_on_unit_interval() const;

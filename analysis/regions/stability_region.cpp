@@ -101,27 +101,24 @@ double StabilityRegion::critical_step(double k, double d) const {
   return first_exit({{{0, d / rate}}, {{0, 0, s * s}}}) / rate;
 }
 
-// Both eigenvalues are outside where 1 - T + Δ and 1 + T + Δ are negative, as one is above 1 and one below
-// -1, or where these are positive and 1 - Δ is negative.
 double StabilityRegion::critical_step_beside_growth(double k, double d) const {
   if (!(k < 0 || d < 0) || !std::isfinite(k) || !std::isfinite(d))
     throw std::invalid_argument("critical_step_beside_growth: k = " + std::to_string(k) +
                                 ", d = " + std::to_string(d) + ", expected both finite and one negative");
   if (k >= 0) return infinity;
+  if (by_values_) {  // the decaying motion as a mode of its own, with a double root
+    if (matrix_form_ != MatrixForm::stability_function) return 0;
+    const double root = std::hypot(d, 2 * std::sqrt(-k)), mu = d > 0 ? (d + root) / 2 : -2 * k / (root - d);
+    return critical_step(mu * mu, 2 * mu);
+  }
   const double rate = std::max(std::sqrt(-k), std::abs(d));  // [1/s]
   const double s = std::sqrt(-k) / rate;
-  const std::vector<Condition> jury = along(jury_, {{{0, d / rate}}, {{0, 0, -s * s}}});
-  const auto sign = [&](Bound bound, double t) {
-    return jury[static_cast<std::size_t>(bound)].sign(t, neutrality);
-  };
-  std::vector<Candidate> cuts = candidates(jury, 0, infinity);
+  const CurveConditions conditions = along({{{0, d / rate}}, {{0, 0, -s * s}}});
+  std::vector<Candidate> cuts = conditions.candidates(0, infinity);
   cuts.insert(cuts.begin(), {0, Bound::window});
-  for (std::size_t i = 0; i < cuts.size(); ++i) {
-    const double t = between(cuts[i].t, i + 1 < cuts.size() ? cuts[i + 1].t : infinity);
-    const int plus = sign(Bound::plus_one, t), minus = sign(Bound::minus_one, t);
-    if ((plus < 0 && minus < 0) || (plus > 0 && minus > 0 && sign(Bound::complex_pair, t) < 0))
+  for (std::size_t i = 0; i < cuts.size(); ++i)
+    if (conditions.several_unstable(between(cuts[i].t, i + 1 < cuts.size() ? cuts[i + 1].t : infinity)))
       return cuts[i].t / rate;
-  }
   return infinity;
 }
 

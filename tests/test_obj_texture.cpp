@@ -226,7 +226,7 @@ BOOST_FIXTURE_TEST_CASE(a_texture_unit_without_a_map_is_one_line, springstab::te
     BOOST_TEST(said(geometry, unit).starts_with("springstab: note: texture_unit: is not used: "));
     BOOST_TEST(said(geometry, "") == "");
   }
-  BOOST_TEST(said(creased, unit) == "");
+  BOOST_TEST(said(creased, unit).find("texture") == std::string::npos);
 }
 
 BOOST_FIXTURE_TEST_CASE(what_the_reader_left_out_is_a_line_for_each_kind, springstab::test::Command) {

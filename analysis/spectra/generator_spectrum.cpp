@@ -7,6 +7,7 @@
 
 #include "analysis/regions/stability_region.h"
 #include "analysis/spectra/eigenvalue_refinement.h"
+#include "analysis/spectra/rigid_motions.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/linear/dense_solvers.h"
 
@@ -22,9 +23,16 @@ using Modes = std::vector<std::complex<double>>;
 void refine(const StructuralMatrices& s, double rate, Modes& modes) {
   double largest = 0;
   for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  const auto small = [&](std::complex<double> mu) { return std::abs(mu) <= rigid_rate * rate; };
   const auto in_doubt = [&](std::complex<double> mu) {
-    return std::abs(mu.real()) <= undamped * largest || std::abs(mu) <= rigid_rate * rate;
+    return std::abs(mu.real()) <= undamped * largest || small(mu);
   };
+  const bool grows = std::any_of(modes.begin(), modes.end(),
+                                 [&](std::complex<double> mu) { return mu.real() > undamped * largest; });
+  // A motion that neither K nor D resists is a double zero: where that explains all, none is asked for alone.
+  const auto zeros = std::count_if(modes.begin(), modes.end(), small);
+  if (zeros > 0 && s.symmetric && !grows && zeros <= 2 * (s.size() - without_rigid_motions(s).size()))
+    std::erase_if(modes, small);
   if (std::none_of(modes.begin(), modes.end(), in_doubt)) return;
   const EigenvalueRefinement refinement(s, rate);
   Modes kept;

@@ -27,8 +27,9 @@ void refine(const StructuralMatrices& s, double rate, Modes& modes) {
   const auto in_doubt = [&](std::complex<double> mu) {
     return std::abs(mu.real()) <= undamped * largest || small(mu);
   };
-  const bool grows = std::any_of(modes.begin(), modes.end(),
-                                 [&](std::complex<double> mu) { return mu.real() > undamped * largest; });
+  const bool grows = std::any_of(modes.begin(), modes.end(), [&](std::complex<double> mu) {
+    return mu.real() > undamped * largest && !small(mu);  // rounding makes such of double zeros
+  });
   // A motion that neither K nor D resists is a double zero: where that explains all, none is asked for alone.
   const auto zeros = std::count_if(modes.begin(), modes.end(), small);
   if (zeros > 0 && s.symmetric && !grows && zeros <= 2 * (s.size() - without_rigid_motions(s).size()))

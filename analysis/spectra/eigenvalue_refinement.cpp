@@ -13,7 +13,6 @@ using ComplexVector = Eigen::VectorXcd;
 
 constexpr int most_iterations = 12;
 constexpr double settled = 1e-12;
-constexpr double shape = 1e3;  // roundings in the shape of a motion, among many that nothing resists
 constexpr double beside_it = 1 + 1e-12;  // where P(μ) has an inverse
 
 /// An unevaluated sum of two doubles: twice the precision (Dekker 1971, Knuth's sum).
@@ -96,16 +95,10 @@ EigenvalueRefinement::EigenvalueRefinement(const StructuralMatrices& s, double r
   if (s.has_damping()) damping_ = scaled(s.damping, root) / rate_;
 }
 
-// Beside its own terms; or, as of flat cloth that moves out of its plane, whose entries of K are themselves
-// rounding, beside the whole matrices, if D does not resist it either.
-bool EigenvalueRefinement::is_rigid(std::complex<double> mu, const Eigen::VectorXcd& x,
-                                    const Eigen::VectorXcd& y) const {
+bool EigenvalueRefinement::is_rigid(const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) const {
   const double round_off = 4 * unit_roundoff * static_cast<double>(x.size());
-  if (std::abs((y.transpose() * stiffness_ * x).value()) <= round_off * sum_of_terms(stiffness_, y, x) &&
-      (stiffness_ * x).norm() <= round_off * (stiffness_.cwiseAbs() * x.cwiseAbs()).norm())
-    return true;
-  return std::norm(mu) <= 2 * round_off * stiffness_.norm() &&
-         (damping_ * x).norm() <= shape * round_off * damping_.norm() * x.norm();
+  return std::abs((y.transpose() * stiffness_ * x).value()) <= round_off * sum_of_terms(stiffness_, y, x) &&
+         (stiffness_ * x).norm() <= round_off * (stiffness_.cwiseAbs() * x.cwiseAbs()).norm();
 }
 
 RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const {
@@ -123,7 +116,7 @@ RefinedEigenvalue EigenvalueRefinement::refine(std::complex<double> start) const
       y = symmetric_ ? x : factor.transpose().solve(mass_ * y).eval().normalized();
     }
     if (!x.allFinite() || !y.allFinite()) break;
-    if (is_rigid(mu, x, y)) return {0, true};
+    if (is_rigid(x, y)) return {0, true};
     const std::complex<double> by = (y.transpose() * slope * x).value();
     const std::complex<double> change =
         -(y.transpose() * residual(mass_, damping_, stiffness_, mu, x)).value() / by;

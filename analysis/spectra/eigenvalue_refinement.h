@@ -24,7 +24,7 @@ class EigenvalueRefinement {
   RefinedEigenvalue refine(std::complex<double> mu) const;
 
  private:
-  bool is_rigid(std::complex<double> mu, const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) const;
+  bool is_rigid(const Eigen::VectorXcd& x, const Eigen::VectorXcd& y) const;
 
   double rate_;
   bool symmetric_;

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/constants.h"
 #include "analysis/regions/stability_region.h"
 #include "analysis/spectra/eigenvalue_refinement.h"
-#include "analysis/spectra/rigid_motions.h"
 #include "analysis/spectra/spectrum.h"
+#include "analysis/spectra/undamped_motions.h"
 #include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
@@ -19,21 +20,27 @@ constexpr double accurate = 1e-6;
 
 using Modes = std::vector<std::complex<double>>;
 
-// Those of rounding's size beside the others, one of each conjugate pair, and what they are in truth.
-void refine(const StructuralMatrices& s, double rate, Modes& modes) {
+// [[0, 1], [-K', -D']].
+Eigen::MatrixXd first_order(const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& damping) {
+  const Eigen::Index n = stiffness.rows();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  matrix.topRightCorner(n, n).setIdentity();
+  matrix.bottomLeftCorner(n, n) = -stiffness;
+  matrix.bottomRightCorner(n, n) = -damping;
+  return matrix;
+}
+
+double largest_of(const Modes& modes) {
   double largest = 0;
   for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
-  const auto small = [&](std::complex<double> mu) { return std::abs(mu) <= rigid_rate * rate; };
+  return largest;
+}
+
+// Those of rounding's size beside the largest, one of each conjugate pair, and what they are in truth.
+void refine(const StructuralMatrices& s, double rate, double largest, Modes& modes) {
   const auto in_doubt = [&](std::complex<double> mu) {
-    return std::abs(mu.real()) <= undamped * largest || small(mu);
+    return std::abs(mu.real()) <= undamped * largest || std::abs(mu) <= rigid_rate * rate;
   };
-  const bool grows = std::any_of(modes.begin(), modes.end(), [&](std::complex<double> mu) {
-    return mu.real() > undamped * largest && !small(mu);  // rounding makes such of double zeros
-  });
-  // A motion that neither K nor D resists is a double zero: where that explains all, none is asked for alone.
-  const auto zeros = std::count_if(modes.begin(), modes.end(), small);
-  if (zeros > 0 && s.symmetric && !grows && zeros <= 2 * (s.size() - without_rigid_motions(s).size()))
-    std::erase_if(modes, small);
   if (std::none_of(modes.begin(), modes.end(), in_doubt)) return;
   const EigenvalueRefinement refinement(s, rate);
   Modes kept;
@@ -48,6 +55,23 @@ void refine(const StructuralMatrices& s, double rate, Modes& modes) {
     }
   }
   modes = std::move(kept);
+}
+
+// The generator of what is left without the undamped motions; their eigenvalues, but of rigid ones.
+Modes split_off_undamped(Generator& g) {
+  const UndampedMotions undamped_motion = undamped_motions(g.stiffness, g.damping);
+  const double rounding = 8 * unit_roundoff * static_cast<double>(g.stiffness.rows());  // of K', of norm 1
+  Modes modes;
+  for (const double lambda : undamped_motion.stiffness) {
+    if (std::abs(lambda) <= rounding) continue;
+    const std::complex<double> mu = g.rate * std::sqrt(std::complex<double>(-lambda));
+    modes.insert(modes.end(), {mu, -mu});
+  }
+  if (undamped_motion.stiffness.size() > 0) {
+    const Eigen::MatrixXd& q = undamped_motion.rest;
+    g.matrix = first_order(q.transpose() * g.stiffness * q, q.transpose() * g.damping * q);
+  }
+  return modes;
 }
 
 }  // namespace
@@ -68,21 +92,23 @@ std::optional<Generator> dimensionless_generator(const StructuralMatrices& s) {
   if (!(g.rate > 0)) return std::nullopt;
   g.stiffness /= g.rate * g.rate;
   g.damping /= g.rate;
-  g.matrix = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  g.matrix.topRightCorner(n, n).setIdentity();
-  g.matrix.bottomLeftCorner(n, n) = -g.stiffness;
-  g.matrix.bottomRightCorner(n, n) = -g.damping;
+  g.matrix = first_order(g.stiffness, g.damping);
   return g;
 }
 
 std::optional<std::vector<std::complex<double>>> generator_spectrum(const StructuralMatrices& s) {
-  const std::optional<Generator> generator = dimensionless_generator(s);
+  std::optional<Generator> generator = dimensionless_generator(s);
   if (!generator) return std::nullopt;
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix, false);
-  if (solver.info() != Eigen::Success) return std::nullopt;
-  std::vector<std::complex<double>> modes;
-  for (const std::complex<double> mu : solver.eigenvalues()) modes.push_back(generator->rate * mu);
-  refine(s, generator->rate, modes);
+  Modes undamped_modes;
+  if (s.symmetric) undamped_modes = split_off_undamped(*generator);
+  Modes modes;
+  if (generator->matrix.size() > 0) {
+    const Eigen::EigenSolver<Eigen::MatrixXd> solver(generator->matrix, false);
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    for (const std::complex<double> mu : solver.eigenvalues()) modes.push_back(generator->rate * mu);
+    refine(s, generator->rate, std::max(largest_of(modes), largest_of(undamped_modes)), modes);
+  }
+  modes.insert(modes.end(), undamped_modes.begin(), undamped_modes.end());
   return modes;
 }
 
@@ -149,8 +175,7 @@ std::optional<double> critical_step(const Method& method, const std::vector<std:
   const StabilityRegion& region = stability_region(method);
   if (region.matrix_form() != MatrixForm::stability_function) return std::nullopt;
   double h = std::numeric_limits<double>::infinity();
-  if (largest > 0)
-    for (const std::complex<double> mu : modes) largest = std::max(largest, std::abs(mu));
+  if (largest > 0) largest = std::max(largest, largest_of(modes));
   for (const std::complex<double> mu : modes) {
     // A real μ stands for the mode with the double root μ.
     const bool no_damping = std::abs(mu.real()) <= undamped * largest;

@@ -12,6 +12,7 @@
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
+#include "experiments/limits_words.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -26,33 +27,6 @@ struct Row {
 
 bool nothing_limits(const Row& row) { return row.limits.status == LimitStatus::unlimited; }
 
-const char* name(LimitStatus status) {
-  switch (status) {
-    case LimitStatus::limited:
-      return "limited";
-    case LimitStatus::unlimited:
-      return "unlimited";
-    case LimitStatus::none:
-      return "none";
-    case LimitStatus::unknown:
-      break;
-  }
-  return "unknown";
-}
-
-const char* name(DampingModel::Kind kind) {
-  switch (kind) {
-    case DampingModel::Kind::none:
-      return "none";
-    case DampingModel::Kind::rayleigh:
-    case DampingModel::Kind::designed:
-      return "rayleigh";
-    case DampingModel::Kind::general:
-      break;
-  }
-  return "general";
-}
-
 Json damping_json(const DampingModel& damping) {
   Json json{{"kind", name(damping.kind)}};
   if (damping.kind == DampingModel::Kind::general) return json;
@@ -60,11 +34,6 @@ Json damping_json(const DampingModel& damping) {
   json["alpha"] = damping.kind == DampingModel::Kind::designed ? Json("designed") : number(damping.alpha);
   return json;
 }
-
-const char* name(BoundKind kind) { return kind == BoundKind::inertia ? "inertia" : "gershgorin"; }
-
-// Where every eigenvalue was computed, k0 is one; else it is a Ritz value, from below.
-const char* value_kind(const StiffestMode& k0) { return k0.smallest ? "eigenvalue" : "Ritz value"; }
 
 std::optional<double> inertia_bound(const StiffestMode& k0) {
   return k0.bound_kind == BoundKind::inertia ? std::optional(k0.upper_bound) : std::nullopt;
@@ -98,26 +67,6 @@ Json k0_json(const StiffestMode& k0) {
   json["value_kind"] = value_kind(k0);
   json["residual"] = number(k0.residual);
   return json;
-}
-
-const char* name(LimitSource source) { return source == LimitSource::exact ? "exact" : "estimate"; }
-
-const char* name(Proof proof) {
-  switch (proof) {
-    case Proof::k0_bound:
-      return "bound on k0";
-    case Proof::quadrant:
-      return "whole quadrant";
-    case Proof::matrix_condition:
-      return "matrix condition";
-    case Proof::polygon:
-      return "polygon";
-    case Proof::lyapunov:
-      return "Lyapunov";
-    case Proof::none:
-      break;
-  }
-  return "none";
 }
 
 Json limits_json(std::string_view method, const MethodLimits& limits, double d0) {

@@ -44,14 +44,6 @@ struct CellCentres {
   }
 };
 
-const char* name(Bound bound) {
-  static constexpr std::pair<Bound, const char*> names[] = {{Bound::complex_pair, "complex_pair"},
-                                                            {Bound::plus_one, "lambda=1"},
-                                                            {Bound::minus_one, "lambda=-1"},
-                                                            {Bound::window, "window"}};
-  return name_in(names, bound);
-}
-
 // "A:B" as a range of an axis; keeps what is there when nothing was given.
 void parse_range(const std::string& range, const std::string& option, double& low, double& high) {
   if (range.empty()) return;
@@ -95,6 +87,14 @@ void check(const RegionOptions& options) {
 }
 
 }  // namespace
+
+const char* name(Bound bound) {
+  static constexpr std::pair<Bound, const char*> names[] = {{Bound::complex_pair, "complex_pair"},
+                                                            {Bound::plus_one, "lambda=1"},
+                                                            {Bound::minus_one, "lambda=-1"},
+                                                            {Bound::window, "window"}};
+  return name_in(names, bound);
+}
 
 std::vector<double> spectral_radii(std::string_view method, const CellGrid& grid, int threads) {
   const CellCentres cells(grid);

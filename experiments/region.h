@@ -17,6 +17,9 @@ struct CellGrid {
   double y(int j) const { return window.y_min + (j + 0.5) * (window.y_max - window.y_min) / ny; }
 };
 
+/// As files have it.
+const char* name(Bound bound);
+
 /// ρ at every cell centre, row by row from the smallest y.
 std::vector<double> spectral_radii(std::string_view method, const CellGrid& grid, int threads);
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,6 +32,7 @@ struct StructureLimitsOptions {
   std::optional<double> max_step{};  // recommended where nothing limits the step [s]
   /// Whether K is indefinite is found out also without `certify`, which costs a factorization.
   bool definiteness = false;
+  std::function<void()> before_product{};  // of the matrices with a vector; may throw to give up
 };
 
 /// Owns what it needs. Everything is computed when it is first asked for, and kept. Not to be shared between
@@ -54,6 +56,7 @@ class StructureLimits {
   std::vector<DampedMode> growing_modes();
 
  private:
+  ArpackOptions search() const;
   GeneralDamping* general();  // null where k0 and two numbers decide
   MethodLimits compute(const Method& method);
   void add_transient_growth(const Method& method, MethodLimits& limits);

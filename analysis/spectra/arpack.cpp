@@ -47,6 +47,7 @@ struct Iteration {
   std::array<a_int, 14> ipntr{};
   a_int info = 1;  // start from our own vector
   long products = 0;
+  std::function<void()> before_product;
 
   Iteration(const LinearOperator& op, Eigen::Index count, const ArpackOptions& options, const char* what,
             Eigen::Index margin)
@@ -63,11 +64,13 @@ struct Iteration {
     iparam[2] = options.max_restarts;
     iparam[6] = 1;  // A v = θ v
     start = start_vector(n, options.start, options.seed);
+    before_product = options.before_product;
     basis.setZero(n, ncv);
     workd.setZero(3 * static_cast<Eigen::Index>(n));
   }
 
   void product(const double* in, double* out) {
+    if (before_product) before_product();
     input_ = Eigen::Map<const Eigen::VectorXd>(in, n);
     a.apply(input_, output_);
     ++products;

@@ -26,6 +26,7 @@ struct ArpackOptions {
   int max_restarts = 2000;
   std::uint64_t seed = 1;   // of the start vector
   Eigen::VectorXd start{};  // used instead if not empty, as from a nearby operator's eigenvector
+  std::function<void()> before_product{};  // may throw to give up
 };
 
 /// `start`, or where that is empty entries uniform in (-1, 1) from the seed. Throws std::invalid_argument for

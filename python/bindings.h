@@ -1,0 +1,40 @@
+// What the parts of the Python extension share. They bind: the numbers are the library's, the words the
+// command's. A part that computes lets other threads of the interpreter run meanwhile.
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+
+#include "experiments/inputs/subject.h"
+
+namespace springstab {
+
+namespace py = pybind11;
+
+/// What limits and simulations are asked of: an input as the command takes it, or matrices.
+class Input {
+ public:
+  explicit Input(const InputOptions& options);
+  Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping);
+
+  Model& model() { return subject_ ? *subject_ : *matrices_; }
+  /// Null where it has no vertices.
+  const Subject* scene() const { return subject_ && subject_->scene() ? subject_.get() : nullptr; }
+
+ private:
+  std::unique_ptr<Subject> subject_;
+  std::unique_ptr<Model> matrices_;
+};
+
+/// Raises KeyboardInterrupt where Ctrl-C was typed. To be called without the interpreter's lock.
+void check_for_interrupt();
+
+void bind_limits(py::module_& module);
+void bind_region(py::module_& module);
+void bind_simulate(py::module_& module);
+
+}  // namespace springstab

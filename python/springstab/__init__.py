@@ -1,0 +1,17 @@
+"""The largest stable time step of each method, for your matrices or your scene.
+
+>>> import springstab as ss
+>>> answer = ss.limits([[100.0, 0.0], [0.0, 400.0]])
+>>> round(answer["symplectic-euler"].h_max, 12)
+0.1
+"""
+
+from ._limits import Damping, Design, Limits, MethodLimits, StiffestMode, limits
+from ._region import BoundaryArc, Method, Region, methods, region
+from ._simulate import Simulation, simulate
+from ._plot import plot_region
+
+__all__ = [
+    "BoundaryArc", "Damping", "Design", "Limits", "Method", "MethodLimits", "Region", "Simulation",
+    "StiffestMode", "limits", "methods", "plot_region", "region", "simulate",
+]

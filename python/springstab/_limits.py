@@ -1,0 +1,187 @@
+"""The largest stable step of each method."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass
+from typing import Dict, Iterator, Mapping, Optional, Sequence, Union
+
+from . import _core
+from ._input import as_input, positive
+from ._region import Method
+
+
+@dataclass(frozen=True)
+class StiffestMode:
+    """The largest eigenvalue k0 of M⁻¹K [1/s²] and what is proved of it.
+
+    ``value`` is None where it did not converge. ``residual`` is ‖K'v − k0 v‖ of the unit vector found, relative
+    to k0. ``upper_bound`` is proved, by ``bound``: a factorization ("inertia") or "gershgorin".
+    """
+
+    value: Optional[float]
+    converged: bool
+    value_kind: Optional[str]
+    residual: Optional[float]
+    upper_bound: float
+    bound: str
+    smallest: Optional[float]
+    products: int
+
+
+@dataclass(frozen=True)
+class Damping:
+    """D = d0 M + alpha K where ``kind`` is "rayleigh", nothing ("none"), or any other ("general").
+
+    ``d0`` in 1/s, ``alpha`` in s; None where two numbers do not say it.
+    """
+
+    kind: str
+    d0: Optional[float]
+    alpha: Optional[float]
+
+
+@dataclass(frozen=True)
+class Design:
+    """The stiffness-proportional damping ``alpha`` [s] that makes the step ``h_max`` [s] largest, beside d0 [1/s]."""
+
+    h_max: float
+    alpha: float
+    d0: float
+
+
+@dataclass(frozen=True)
+class MethodLimits:
+    """What one method can do. Steps in seconds, ``inf`` where nothing limits them, None where none is known.
+
+    ``status``
+        "limited", "unlimited", "none" (no step is stable) or "unknown".
+    ``h_max``
+        Every smaller step keeps every mode bounded, with the structure's own damping; ``h_max_source`` says
+        whether it is "exact" (for k0) or an "estimate" (from computed eigenvalues).
+    ``h_certified``
+        Proved stable; ``h_certified_source`` says by what, ``reason`` why nothing is.
+    ``recommended_step``
+        With the safety factor on the stiffness.
+    ``designed``
+        The best damping that could be fitted.
+    ``h_every_pose``
+        Proved for every pose of a scene of springs.
+    ``transient_growth``
+        How far √energy may grow at the recommended step before it decays, at least.
+    """
+
+    name: str
+    status: str
+    h_max: Optional[float]
+    h_max_source: Optional[str]
+    h_certified: Optional[float]
+    h_certified_source: Optional[str]
+    reason: Optional[str]
+    recommended_step: Optional[float]
+    designed: Optional[Design]
+    h_every_pose: Optional[float]
+    transient_growth: Optional[float]
+
+
+@dataclass(frozen=True)
+class Limits(Mapping[str, MethodLimits]):
+    """The answer for a structure: a mapping from the names of methods to :class:`MethodLimits`."""
+
+    degrees_of_freedom: int
+    condensed: int
+    symmetric: bool
+    stiffness_indefinite: bool
+    growth_rate: Optional[float]
+    k0: StiffestMode
+    damping: Damping
+    safety: float
+    methods: Dict[str, MethodLimits]
+
+    def __getitem__(self, name: Union[str, Method]) -> MethodLimits:
+        return self.methods[str(name)]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.methods)
+
+    def __len__(self) -> int:
+        return len(self.methods)
+
+    def _rows(self):
+        def cell(h):
+            return "-" if h is None else f"{h:.6g}"
+
+        for m in self.methods.values():
+            yield m.name, m.status, cell(m.h_max), cell(m.h_certified), cell(m.recommended_step)
+
+    _head = ("method", "status", "h_max [s]", "certified [s]", "to use [s]")
+
+    def _title(self):
+        k0 = "k0 not converged" if self.k0.value is None else f"k0 = {self.k0.value:.10g} 1/s²"
+        return f"{self.degrees_of_freedom} unknowns, {k0}, damping: {self.damping.kind}"
+
+    def __repr__(self) -> str:
+        rows = [self._head, *self._rows()]
+        widths = [max(len(row[i]) for row in rows) for i in range(len(self._head))]
+        lines = ("  ".join(c.ljust(w) if i < 2 else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths)))
+                 for row in rows)
+        return "\n".join([self._title(), *(line.rstrip() for line in lines)])
+
+    def _repr_html_(self) -> str:
+        def row(cells, tag):
+            return "<tr>" + "".join(f"<{tag}>{html.escape(c)}</{tag}>" for c in cells) + "</tr>"
+
+        body = "".join(row(cells, "td") for cells in self._rows())
+        return (f"<table><caption>{html.escape(self._title())}</caption>"
+                f"<thead>{row(self._head, 'th')}</thead><tbody>{body}</tbody></table>")
+
+
+def limits(K=None, M=None, D=None, *, methods: Sequence[Union[str, Method]] = (), safety: float = 1.5,
+           max_step: float = 0.01, certify: bool = True, seed: int = 1, grid: Optional[str] = None,
+           spacing: Optional[float] = None, material: Optional[str] = None, pin: Optional[str] = None,
+           scale: Optional[float] = None, diagonals: Optional[str] = None) -> Limits:
+    """The largest stable step of each method for ``M x'' = −K x − D v``, or for a scene.
+
+    Parameters
+    ----------
+    K : (n, n) array or sparse matrix, or path
+        Stiffness [N/m], or the file of a scene or a mesh. With ``grid="NxM"`` nothing.
+    M, D : (n, n) array or sparse matrix, optional
+        Mass [kg] (default: 1) and damping [kg/s] (default: none).
+    methods : names of methods; default: those of the command
+    safety : factor >= 1 on the stiffness, for the recommended steps
+    max_step : recommended where nothing limits the step [s]
+    certify : False leaves out every proof, which is quicker
+    grid, spacing, material, pin, scale, diagonals
+        As the command's options of these names.
+
+    Returns
+    -------
+    Limits
+        Exact for Rayleigh damping and for symplectic Euler with any; else from all eigenvalues of the motion
+        where they were computed. A step that is certified is stable also in exact arithmetic.
+
+    Raises
+    ------
+    ValueError
+        In the command's words, for what cannot be used.
+
+    Examples
+    --------
+    >>> import scipy.sparse
+    >>> chain = 1e4 * scipy.sparse.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(50, 50))
+    >>> answer = limits(chain)
+    >>> f"{answer['symplectic-euler'].h_max:.6f}"
+    '0.010005'
+    >>> answer["implicit-euler"].status
+    'unlimited'
+    """
+    positive("max_step", max_step)
+    of = as_input(K, M, D, grid, spacing, material, pin, scale, diagonals)
+    found = _core.limits(of, [str(m) for m in methods], safety, max_step, seed, certify)
+    found["k0"] = StiffestMode(**found["k0"])
+    found["damping"] = Damping(**found["damping"])
+    for one in found["methods"].values():
+        one["designed"] = one["designed"] and Design(*one["designed"])
+    found["methods"] = {name: MethodLimits(**one) for name, one in found["methods"].items()}
+    return Limits(**found)

@@ -62,6 +62,7 @@ PYBIND11_MODULE(_core, module) {
       .def_property_readonly(
           "faces", [](const Input& input) { return input.scene() ? input.scene()->faces() : Faces(); });
   bind_limits(module);
+  bind_own_step(module);
   bind_region(module);
   bind_simulate(module);
 }

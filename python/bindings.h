@@ -34,6 +34,7 @@ class Input {
 void check_for_interrupt();
 
 void bind_limits(py::module_& module);
+void bind_own_step(py::module_& module);
 void bind_region(py::module_& module);
 void bind_simulate(py::module_& module);
 

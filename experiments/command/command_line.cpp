@@ -18,9 +18,9 @@ namespace springstab {
 namespace {
 
 std::vector<Subcommand> all_subcommands() {
-  return {methods_command(),    region_command(),     limits_command(),
-          simulate_command(),   complexity_command(), work_precision_command(),
-          divergence_command(), stress_command(),     figures_command()};
+  return {methods_command(),    region_command(),         limits_command(),     simulate_command(),
+          complexity_command(), work_precision_command(), divergence_command(), stress_command(),
+          figures_command(),    probe_command()};
 }
 
 CLI::Option* add_target(CLI::App& app, const Option& option, bool* flag) {

@@ -7,11 +7,12 @@
 """
 
 from ._limits import Damping, Design, Limits, MethodLimits, StiffestMode, limits
+from ._own_step import MethodFit, OwnStep, largest_stable_step
 from ._region import BoundaryArc, Method, Region, methods, region
 from ._simulate import Simulation, simulate
 from ._plot import plot_region
 
 __all__ = [
-    "BoundaryArc", "Damping", "Design", "Limits", "Method", "MethodLimits", "Region", "Simulation",
-    "StiffestMode", "limits", "methods", "plot_region", "region", "simulate",
+    "BoundaryArc", "Damping", "Design", "Limits", "Method", "MethodFit", "MethodLimits", "OwnStep", "Region", "Simulation",
+    "StiffestMode", "largest_stable_step", "limits", "methods", "plot_region", "region", "simulate",
 ]

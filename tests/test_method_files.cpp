@@ -122,7 +122,9 @@ BOOST_AUTO_TEST_CASE(intervals_are_those_published) {
     BOOST_TEST(c.real_interval == 2.512745326618, tolerance(1e-12));
     BOOST_TEST(c.imaginary_interval == std::sqrt(3.0), tolerance(1e-12));
     BOOST_TEST(std::abs(c.y_max - 6.44156) < 5e-6);
-    BOOST_TEST(std::abs(c.x_at_y_max - 2.15253) < 5e-6);
+    BOOST_TEST(std::abs(c.x_at_y_max - 2.1526) < 5e-5);
+    for (const double beside : {2.1525, 2.1527})
+      BOOST_TEST(region.stable_intervals({{{beside}}, {{0, 1}}}, 0, 100).back().upper < c.y_max);
   }
   const StabilityRegion embedded(shipped("bogacki_shampine2"));
   BOOST_TEST(embedded.constants().real_interval == 3.152346612, tolerance(1e-9));
@@ -376,11 +378,25 @@ BOOST_AUTO_TEST_CASE(the_command_takes_a_file) {
   BOOST_TEST(last(limits.json()["methods"]) == "kutta3");
   for (const char* each : {"kutta3", "crouzeix3", "gauss2", "bdf3", "stormer", "verlet_pair"}) {
     const Outcome run = springstab(
-        "simulate --grid 4x4 --pin corners --duration 0.05 --step 0.001 --json "
+        "simulate --grid 4x4 --pin corners --duration 0.02 --step 0.0002 --json "
         "--method-file '" +
         folder + each + ".json'");
     BOOST_TEST(run.status == 0, each << ": " << run.err);
   }
+  // Consistent, of order 3, and never stable: ρ has the root -5.
+  const std::string unstable =
+      springstab
+          .file("unstable.json", R"({"name": "unstable", "kind": "multistep", "form": "first-order",
+                                          "alpha": [-5, 4, 1], "beta": [2, 4, 0]})")
+          .string();
+  const Outcome amplifies = springstab("region --nx 20 --ny 20 --method-file '" + unstable + "'");
+  BOOST_TEST(amplifies.status == 0);
+  BOOST_TEST(amplifies.out.find("no X, Y is stable: the method amplifies") != std::string::npos,
+             amplifies.out);
+  const Outcome no_step =
+      springstab("limits --grid 4x4 --pin corners --method unstable --json --method-file '" + unstable + "'");
+  BOOST_TEST(no_step.status == 3);
+  BOOST_TEST(no_step.json()["methods"][0]["status"] == "none");
   const Outcome bad =
       springstab("region --method-file '" + springstab.file("bad.json", "{\n\"kind\": 1}").string() + "'");
   BOOST_TEST(bad.status == 2);

@@ -69,6 +69,7 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
   std::vector<StableInterval> found;
   bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (i > 0 && cuts[i].t == cuts[i + 1].t) continue;  // a double root, where a condition may but touch zero
     const bool stable = cuts[i].t < cuts[i + 1].t && conditions.stable(between(cuts[i].t, cuts[i + 1].t));
     if (stable && touching) {
       found.back().upper = cuts[i + 1].t;

@@ -13,7 +13,7 @@ void JsonReader::fail(long line, const std::string& message) const {
 }
 
 void JsonReader::wrong(const JsonValue& json, const std::string& expected) const {
-  const std::string found = json.kind == JsonValue::Kind::string ? quoted(json.text) : json.text;
+  const std::string found = json.kind == JsonValue::Kind::string ? springstab::quoted(json.text) : json.text;
   fail(json.line, json.name + " is " + found + ", expected " + expected);
 }
 

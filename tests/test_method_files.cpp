@@ -74,6 +74,21 @@ std::vector<Twin> twins() {
   };
 }
 
+/// Further multistep methods, and their orders.
+std::vector<std::pair<Method, int>> multistep_methods() {
+  const auto first = [](const std::string& alpha, const std::string& beta) {
+    return of("multistep", R"("form": "first-order", "alpha": [)" + alpha + R"(], "beta": [)" + beta + "]");
+  };
+  return {{first("0, 0, 0, -1, 1", R"("-9/24", "37/24", "-59/24", "55/24", 0)"), 4},
+          {first("0, -1, 1", R"("-1/12", "8/12", "5/12")"), 3},
+          {first("0, 0, -1, 1", R"("1/24", "-5/24", "19/24", "9/24")"), 4},
+          {first(R"("3/25", "-16/25", "36/25", "-48/25", 1)", R"(0, 0, 0, 0, "12/25")"), 4},
+          {first("-1, 0, 1", "0, 2, 0"), 2},
+          {of("multistep", R"("form": "second-order", "alpha": [1, -2, 1], "beta": ["1/12", "10/12", "1/12"],
+                              "velocity": {"x": [0, -1, 1], "a": ["-1/24", "1/4", "7/24"]})"),
+           4}};
+}
+
 /// x'' = -∇U(x) - c(v) of two unknowns, with both Jacobians: nonlinear, and coupled through U alone.
 class Coupled final : public System {
  public:
@@ -230,6 +245,7 @@ BOOST_AUTO_TEST_CASE(orders_are_what_the_tableaus_say) {
   std::vector<Method> methods;
   for (const std::string& name : all_shipped()) methods.push_back(shipped(name));
   for (const Twin& twin : twins()) methods.push_back(twin.from_file);
+  for (const auto& [method, order] : multistep_methods()) methods.push_back(method);
   for (const Method& method : methods) BOOST_TEST_CONTEXT(method.info().title) {
       const int p = method.info().order;
       const long n = p >= 5 ? 10 : p >= 4 ? 20 : 80;
@@ -257,6 +273,7 @@ BOOST_AUTO_TEST_CASE(orders_are_found_from_the_coefficients) {
                                     {"bdf3", 3},
                                     {"stormer", 2}})
     BOOST_TEST(shipped(name).info().order == order, name);
+  for (const auto& [method, order] : multistep_methods()) BOOST_TEST(method.info().order == order);
 }
 
 // Certified is below the truth; fully implicit methods are stable where they say they are; what has neither a

@@ -2,7 +2,8 @@
 // k - 1 states before: x where an α of theirs is not zero or the form is of second order, v in the
 // first-order form, a where a β or δ is not zero; each from the youngest to the oldest.
 //
-// An implicit one takes one Newton step from the polynomial through the velocities it has. The states before
+// An implicit one takes one Newton step from the polynomial through the velocities it has, or in the
+// second-order form one for every two orders from the last. The states before
 // the first are made so that the order stays: of explicit methods by RK4 backwards, of implicit ones by the
 // polynomial through u_0 and p - 1 steps forward of implicit Euler extrapolated to order p - 1, which stay
 // bounded at any step.
@@ -162,7 +163,7 @@ class MultistepMethod<solves>::Steps {
       f_ = (1 / q) * (s.x + h * s.v - x_);
     }
     newton_.begin();
-    return newton_.solve(system, g, q, 1, x_, v_, f_);
+    return newton_.solve(system, g, q, f.second_order ? (m_.order + 1) / 2 : 1, x_, v_, f_);
   }
 
   // f_ = the velocity to come by the polynomial through those there are, Σ (-1)^j C(n, j + 1) v_j.

@@ -6,7 +6,7 @@
 // second-order form one for every two orders from the last. The states before
 // the first are made so that the order stays: of explicit methods by RK4 backwards, of implicit ones by the
 // polynomial through u_0 and p - 1 steps forward of implicit Euler extrapolated to order p - 1, which stay
-// bounded at any step.
+// bounded at any step. (In the second-order form, where the first difference of x is a velocity, p of them.)
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct MultistepMethod {
       : name(std::move(its_name)),
         title(std::move(its_title)),
         formula(given),
-        order(std::min(order_of(given), order_of_start + 1)) {
+        order(std::min(order_of(given), order_of_start + (given.second_order ? 0 : 1))) {
     const double leading = formula.alpha.back();
     for (double& a : formula.alpha) a /= leading;
     for (double& b : formula.beta) b /= leading;
@@ -177,10 +177,10 @@ class MultistepMethod<solves>::Steps {
     }
   }
 
-  // `forward_`: the state and order - 1 steps from it (one at least).
+  // `forward_`: the state and the steps from it.
   template <class System>
   void step_forward(System& system, double h, const State<V>& state) {
-    const int degree = std::max(1, m_.order - 1);
+    const int degree = std::max(1, m_.order - (m_.formula.second_order ? 0 : 1));
     forward_.assign(1, {state.x, state.v});
     for (int i = 0; i < degree; ++i) {
       const State<V> from = forward_.back();

@@ -1,6 +1,6 @@
 // A method that is a tableau given at run time (tableau.h), explicit or implicit: one step for all of them.
 //
-//     const Method mine = method_of("kutta3", runge_kutta(a, b));   // analysis/method_of_coefficients.h
+//     const Method mine = method_of({"kutta3", "Kutta 3"}, runge_kutta(a, b));   // method_of_coefficients.h
 //
 // Stages that depend on themselves are solved one after the other (newton_stage.h), from the velocity of the
 // stage before; those that depend on later ones all together, (1 + hâ ⊗ D' + h²ā ⊗ K') F = ..., from f = 0.

@@ -4,9 +4,9 @@
 //
 // An implicit one takes one Newton step from the polynomial through the velocities it has, or in the
 // second-order form one for every two orders from the last velocity. The states before the first are made so
-// that the order p stays: of explicit methods by RK4 backwards, of implicit ones by the polynomial through u_0
-// and p - 1 steps forward of implicit Euler extrapolated to order p - 1, which stay bounded at any step. (In
-// the second-order form, where the first difference of x is a velocity, p of them.)
+// that the order p stays: of explicit methods by RK4 backwards, of implicit ones by the polynomial through
+// u_0 and p - 1 steps forward of implicit Euler extrapolated to order p - 1, which stay bounded at any step.
+// (In the second-order form, where the first difference of x is a velocity, p of them.)
 #pragma once
 
 #include <algorithm>

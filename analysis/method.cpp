@@ -39,9 +39,14 @@ std::vector<Method> made_of_list() {
   return methods;
 }
 
+std::vector<Method>& added() {
+  static std::vector<Method> methods;
+  return methods;
+}
+
 Method made(std::string_view text) {
   std::string known;
-  for (const auto* list : {&all_methods(), &more_methods()})
+  for (const auto* list : {&all_methods(), &more_methods(), &added_methods()})
     for (const Method& method : *list) {
       if (method.name() == text) return method;
       known += (known.empty() ? "" : ", ") + method.name();
@@ -71,6 +76,17 @@ const std::vector<Method>& more_methods() {
   static const std::vector<Method> all = made_of_list<MoreMethods>();
   return all;
 }
+
+void add_method(const Method& method) {
+  for (const auto* list : {&all_methods(), &more_methods(), &added_methods()})
+    for (const Method& known : *list)
+      if (known.name() == method.name())
+        throw std::invalid_argument("the name '" + method.name() +
+                                    "' is another method's, expected a new one");
+  added().push_back(method);
+}
+
+const std::vector<Method>& added_methods() { return added(); }
 
 Method::Method(std::string_view name) : Method(built_in(name)) {}
 

@@ -30,6 +30,11 @@ std::vector<Figure> chosen_figures(const std::vector<std::string>& names) {
       return name == f.name || name == f.file || (!f.alias.empty() && name == f.alias);
     });
     if (found == all.end()) {
+      try {
+        chosen.push_back(region_figure(name));
+        continue;
+      } catch (const UnknownMethod&) {
+      }
       std::string known;
       for (const Figure& f : all) known += (known.empty() ? "" : ", ") + f.name;
       throw InputError("figures", 0, "there is no figure '" + name + "', expected one of " + known);
@@ -75,8 +80,8 @@ Subcommand figures_command() {
           .footer = "example: springstab figures 1 2 --output figures",
           .options = {Option("NAMES", &o->names,
                              "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs, "
-                             "stress or a method's "
-                             "name (default: all)")
+                             "stress or any "
+                             "method's name, for its region (default: all)")
                           .shown_as(""),
                       Option("--quick", &o->quick, "fewer simulated cells, smaller cloths"),
                       plots_option(o->plots),

@@ -249,7 +249,8 @@ Subcommand region_command() {
           "All quantities are dimensionless. Cells count as neutral where |rho - 1| <= 1e-9.\n\n"
           "example: springstab region rk4 --x -0.6:6 --y 0:9 --boundary rk4.csv",
       .options =
-          {Option("METHOD", &o->method, "one of " + method_names()).needed().shown_as(""),
+          {Option("METHOD", &o->method, "one of " + method_names() + "; needed without --method-file")
+               .shown_as(""),
            Option("--x", &o->x, "range of X (default: the region's own extent)").shown_as("A:B"),
            Option("--y", &o->y, "range of Y").shown_as("A:B"),
            Option("--nx", &o->nx, "cells along X").with_default(),
@@ -264,7 +265,10 @@ Subcommand region_command() {
            Option("--cells", &o->cells, "write the simulated cells: x,y,spectral_radius,diverged")
                .shown_as("F.csv"),
            Option("--steps", &o->cell_steps, "steps of each simulated cell").with_default()},
-      .run = [o](const CommonOptions& common) { return run_region(common, *o); }};
+      .run = [o](const CommonOptions& common) {
+        o->method = method_asked_for(o->method, "METHOD");
+        return run_region(common, *o);
+      }};
 }
 
 }  // namespace springstab

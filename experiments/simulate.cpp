@@ -4,6 +4,7 @@
 
 #include "experiments/command/interrupt.h"
 #include "experiments/command/output.h"
+#include "experiments/command/shared_options.h"
 #include "experiments/explain.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
@@ -46,22 +47,22 @@ void check(const SimulateOptions& options) {
 // All that decides what a run does and writes.
 Json identity(const CommonOptions& common, const SimulateOptions& o) {
   if (o.output.empty()) return {};  // nothing is kept
-  return identity_of("simulate",
-                     {{"method", o.method},
-                      {"duration", o.duration},
-                      {"step", number(o.step)},
-                      {"max-step", number(o.max_step)},
-                      {"safety", o.safety},
-                      {"relinearize", o.relinearize},
-                      {"damping", o.designed_damping ? "designed" : "own"},
-                      {"hessian", o.projected_hessian ? "projected" : "exact"},
-                      {"solver", o.direct ? "direct" : "cg"},
-                      {"cg-tolerance", o.cg_tolerance},
-                      {"format", o.format},
-                      {"frames", o.frames},
-                      {"keep-diverged", o.keep_diverged},
-                      {"seed", common.seed}},
-                     contents_of(o.input, o.earlier.resume));
+  Json settings{{"method", o.method},
+                {"duration", o.duration},
+                {"step", number(o.step)},
+                {"max-step", number(o.max_step)},
+                {"safety", o.safety},
+                {"relinearize", o.relinearize},
+                {"damping", o.designed_damping ? "designed" : "own"},
+                {"hessian", o.projected_hessian ? "projected" : "exact"},
+                {"solver", o.direct ? "direct" : "cg"},
+                {"cg-tolerance", o.cg_tolerance},
+                {"format", o.format},
+                {"frames", o.frames},
+                {"keep-diverged", o.keep_diverged},
+                {"seed", common.seed}};
+  settings.update(method_settings(common));
+  return identity_of("simulate", settings, contents_of(o.input, o.earlier.resume));
 }
 
 std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,

@@ -40,7 +40,8 @@ Subcommand simulate_command() {
           "         the same with --resume after Ctrl-C or a crash",
       .options = with_input(
           o->input,
-          {Option("--method", &o->method, "one of " + method_names()).needed().shown_as("NAME"),
+          {Option("--method", &o->method, "one of " + method_names() + "; needed without --method-file")
+               .shown_as("NAME"),
            Option("--duration", &o->duration, "time to simulate").needed().shown_as("[s]"),
            Option("--step", &o->step, "step (default: the recommended one of `limits`)").shown_as("[s]"),
            Option("--max-step", &o->max_step, "largest step to choose (default 0.01 where nothing limits it)")
@@ -73,6 +74,7 @@ Subcommand simulate_command() {
                   "of a run that diverges, also record every one of its last 32 steps before that"),
            resume_option(o->earlier), overwrite_option(o->earlier)}),
       .run = [o](const CommonOptions& common) {
+        o->method = method_asked_for(o->method, "--method");
         o->designed_damping = o->damping == "designed";
         o->projected_hessian = o->hessian == "projected";
         o->direct = o->solver == "direct";

@@ -57,6 +57,10 @@ class CountingSystem final : public System {
       counts->block_products += report.products;
       return report;
     }
+    SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
+                              std::vector<Vector>& out) override {
+      return target->solve_coupled(coupling, rhs, out);
+    }
     double kinetic_energy(const Vector& v) override { return target->kinetic_energy(v); }
     double potential_energy(const Vector& x) override { return target->potential_energy(x); }
 

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <concepts>
 #include <memory>
+#include <stdexcept>
+#include <vector>
 
 #include "solvers/state.h"
 
@@ -22,6 +24,11 @@ struct Shift {
     return stiffness == damping * damping ? damping * (alpha + damping) : damping * alpha + stiffness;
   }
   friend bool operator==(const Shift&, const Shift&) = default;
+};
+
+/// The s x s factors of D' [s] and K' [s²] by which the accelerations of s stages depend on each other.
+struct StageCoupling {
+  Eigen::MatrixXd damping, stiffness;
 };
 
 /// How a solve with m + dD' + kK' went.
@@ -94,6 +101,14 @@ class LinearSystem : public System {
   virtual void damping_times(const Vector& u, Vector& out) = 0;    // out = D'u
   /// Solves (m + dD' + kK') out = rhs, starting from zero where it iterates.
   virtual SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) = 0;
+  /// Solves out_i + Σ_j (damping_ij D' + stiffness_ij K') out_j = rhs_i, as fully implicit Runge-Kutta
+  /// methods need it: by a factorization of the whole, for systems that have their matrices. The others throw
+  /// std::invalid_argument.
+  virtual SolveReport solve_coupled(const StageCoupling&, const std::vector<Vector>&, std::vector<Vector>&) {
+    throw std::invalid_argument(
+        "a fully implicit method solves for all stages together, expected a system that has K and D as "
+        "matrices");
+  }
   /// Itself, not a copy: it has to outlive its linearization.
   void linearize(const Vector&, const Vector&, Linearization<Vector>& linear) override {
     linear = Linearization<Vector>(Linearization<Vector>(), this);

@@ -15,6 +15,13 @@ namespace {
 
 constexpr Eigen::Index largest_exact = 6;  // m up to which the polynomial's conditions serve
 
+// Every seventh, with the first, the middle and the last.
+std::vector<double> thinned(const std::vector<double>& line) {
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < line.size(); i += 7) kept.push_back(line[i]);
+  return kept;
+}
+
 }  // namespace
 
 // u -> 4u / (1 - u²).
@@ -48,6 +55,7 @@ StabilityRegion::StabilityRegion(const Method& method)
   std::vector<double> line = whole_line();
   if (const double interval = critical_step(0, 1); by_values_ && std::isfinite(interval))  // X < twice that
     for (double& x : line) x *= std::max(1.0, 3 * interval / whole_line().back());
+  if (method.size() > largest_exact) line = thinned(line);  // eigenvalues one matrix at a time
   all_pieces_ = smooth_pieces(line, -infinity, infinity);
   constants_ = find_constants();
 }
@@ -69,6 +77,7 @@ std::vector<StableInterval> StabilityRegion::stable_intervals(const Curve& curve
   std::vector<StableInterval> found;
   bool touching = false;  // whether the previous gap was stable too: then nothing changed at this cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    if (i > 0 && cuts[i].t == cuts[i + 1].t) continue;  // a double root, where a condition may but touch zero
     const bool stable = cuts[i].t < cuts[i + 1].t && conditions.stable(between(cuts[i].t, cuts[i + 1].t));
     if (stable && touching) {
       found.back().upper = cuts[i + 1].t;

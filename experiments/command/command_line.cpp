@@ -11,6 +11,7 @@
 #include "experiments/command/interrupt.h"
 #include "experiments/command/subcommand_list.h"
 #include "experiments/command/words.h"
+#include "experiments/inputs/method_file.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/text_file.h"
 
@@ -96,6 +97,9 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_option("--threads", common.threads, "for the X-Y planes of region, divergence and figures")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  app.add_option("--method-file", common.method_file,
+                 "a method from a JSON file, for every subcommand that names or lists methods")
+      ->type_name("F.json");
   app.require_subcommand(1);
   app.fallthrough();
   app.footer(
@@ -132,6 +136,7 @@ int run_command(int argc, const char* const* argv) {
   exit_on_interrupt("nothing was saved");
   try {
     app.parse(argc, argv);
+    if (!common.method_file.empty()) add_method(read_method_file(common.method_file));
     return chosen->run(common);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version

@@ -13,6 +13,7 @@ struct CommonOptions {
   bool quiet = false;
   std::uint64_t seed = 1;
   int threads = 1;
+  std::string method_file{};      // its method is known by then
   std::set<std::string> given{};  // names of the subcommand's options that were typed, as "--nx"
 };
 

@@ -1,9 +1,13 @@
 #include "experiments/command/shared_options.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <sstream>
 #include <system_error>
+
+#include "experiments/runs/fnv1a.h"
+#include "experiments/runs/identity.h"
 
 namespace springstab {
 
@@ -19,7 +23,9 @@ Option methods_option(std::string& names) {
       .shown_as("all|LIST");
 }
 
-std::vector<Method> methods_of(const std::string& names) {
+namespace {
+
+std::vector<Method> methods_named(const std::string& names) {
   std::vector<Method> methods = all_methods();
   if (names.empty()) return methods;
   if (names == "all") {
@@ -40,6 +46,28 @@ std::vector<Method> methods_of(const std::string& names) {
   methods.clear();
   for (const std::string& word : words) methods.emplace_back(word);
   return methods;
+}
+
+}  // namespace
+
+std::vector<Method> methods_of(const std::string& names) {
+  std::vector<Method> methods = methods_named(names);
+  for (const Method& method : added_methods())
+    if (std::find(methods.begin(), methods.end(), method) == methods.end()) methods.push_back(method);
+  return methods;
+}
+
+std::string method_asked_for(const std::string& name, const std::string& option) {
+  if (!name.empty()) return name;
+  if (added_methods().empty()) throw std::invalid_argument(option + " is required; see springstab --help");
+  return added_methods().back().name();
+}
+
+Json method_settings(const CommonOptions& common, const std::string& names) {
+  Json settings = Json::object();
+  if (!names.empty()) settings["methods"] = names;
+  if (!common.method_file.empty()) settings["method-file"] = hash_of(bytes_of(common.method_file));
+  return settings;
 }
 
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {

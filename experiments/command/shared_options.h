@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/method.h"
+#include "experiments/command/output.h"
 #include "experiments/command/subcommand_list.h"
 #include "experiments/inputs/subject.h"
 
@@ -15,8 +16,13 @@ std::string method_names();
 
 /// --methods: "all", or names with commas; empty for those shown where none is named.
 Option methods_option(std::string& names);
-/// What --methods says. Throws std::invalid_argument for an unknown one.
+/// What --methods says, and the method of --method-file. Throws std::invalid_argument for an unknown one.
 std::vector<Method> methods_of(const std::string& names);
+/// The name that was given as `option`; where none was, that of the method of --method-file. Throws
+/// std::invalid_argument where there is none either.
+std::string method_asked_for(const std::string& name, const std::string& option);
+/// For the identity of a run: --methods and the contents of --method-file, where they are given.
+Json method_settings(const CommonOptions& common, const std::string& names = "");
 
 /// INPUT and what belongs to it, then `more`.
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);

@@ -5,7 +5,7 @@
 
 #include "experiments/command/words.h"
 #include "experiments/inputs/grid.h"
-#include "experiments/inputs/json_with_lines.h"
+#include "experiments/inputs/json_reader.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/text_file.h"
@@ -13,9 +13,9 @@
 namespace springstab {
 namespace {
 
-class SceneReader {
+class SceneReader : private JsonReader {
  public:
-  explicit SceneReader(const std::string& source) : source_(source) {}
+  using JsonReader::JsonReader;
 
   SceneDescription scene(const JsonValue& json) const {
     expect_members(json,
@@ -47,37 +47,6 @@ class SceneReader {
 
  private:
   enum class Sign { any, not_negative, positive };
-
-  [[noreturn]] void fail(long line, const std::string& message) const {
-    throw InputError(source_, line, message);
-  }
-
-  [[noreturn]] void wrong(const JsonValue& json, const std::string& expected) const {
-    const std::string found =
-        json.kind == JsonValue::Kind::string ? springstab::quoted(json.text) : json.text;
-    fail(json.line, json.name + " is " + found + ", expected " + expected);
-  }
-
-  /// Nothing but these keys, none of them twice.
-  void expect_members(const JsonValue& object, const std::vector<std::string_view>& known) const {
-    if (object.kind != JsonValue::Kind::object) wrong(object, "an object");
-    for (auto member = object.items.begin(); member != object.items.end(); ++member) {
-      if (std::find(known.begin(), known.end(), member->key) == known.end())
-        fail(member->key_line, "unknown key " + member->name + " in " + object.name + ", " +
-                                   expected_one_of(member->key, known));
-      const auto same = [&](const JsonValue& other) { return other.key == member->key; };
-      const auto first = std::find_if(object.items.begin(), member, same);
-      if (first != member)
-        fail(member->key_line, "duplicate key " + member->name + ", expected it once (it stands on line " +
-                                   std::to_string(first->key_line) + " too)");
-    }
-  }
-
-  static const JsonValue* find(const JsonValue& object, std::string_view key) {
-    const auto member = std::find_if(object.items.begin(), object.items.end(),
-                                     [&](const JsonValue& item) { return item.key == key; });
-    return member == object.items.end() ? nullptr : &*member;
-  }
 
   /// A key that may stand in the geometry or beside it; null where it does neither.
   const JsonValue* beside_or_in(const JsonValue& scene, const JsonValue& geometry,
@@ -298,8 +267,6 @@ class SceneReader {
     if (const JsonValue* velocity = find(json, "velocity")) initial.velocity = vector(*velocity);
     return initial;
   }
-
-  const std::string& source_;
 };
 
 }  // namespace

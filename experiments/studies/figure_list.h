@@ -26,6 +26,8 @@ struct Figure {
 };
 
 std::vector<Figure> region_figures();
+/// The region of any method, in the same style. Throws UnknownMethod.
+Figure region_figure(const std::string& method);
 std::vector<Figure> drape_figures();   // the paper's Fig. 4, frames over time, k0 over time
 std::vector<Figure> timing_figures();  // its Figs. 5 to 7
 std::vector<Figure> divergence_figures();

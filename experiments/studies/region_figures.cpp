@@ -77,26 +77,25 @@ Json draw_region(const std::string& method, const std::string& number, const std
 
 }  // namespace
 
-// The paper numbers three methods; every other one has its region drawn in the same style.
-std::vector<Figure> region_figures() {
+// The paper numbers three methods.
+Figure region_figure(const std::string& method) {
   const std::map<std::string_view, std::string> numbered{
       {"explicit-euler", "1"}, {"rk4", "2"}, {"implicit-euler", "3"}};
+  const auto found = numbered.find(Method(method).name());
+  const std::string number = found == numbered.end() ? "" : found->second;
+  const auto draw_it = [method, number](const std::string& base, const CommonOptions& common,
+                                        const FiguresOptions& options) {
+    return draw_region(method, number, base, common, options);
+  };
+  if (number.empty()) return {.file = "region_" + method, .name = method, .draw = draw_it};
+  return {.file = "figure_" + number + "_" + method, .name = number, .alias = method, .draw = draw_it};
+}
+
+std::vector<Figure> region_figures() {
   std::vector<Figure> figures;
-  for (const Method& each : all_methods()) {
-    if (each.info().linearized) continue;  // the region of the method inside
-    const std::string method(each.name());
-    const auto found = numbered.find(each.name());
-    const std::string number = found == numbered.end() ? "" : found->second;
-    const auto draw_it = [method, number](const std::string& base, const CommonOptions& common,
-                                          const FiguresOptions& options) {
-      return draw_region(method, number, base, common, options);
-    };
-    if (number.empty())
-      figures.push_back({.file = "region_" + method, .name = method, .draw = draw_it});
-    else
-      figures.push_back(
-          {.file = "figure_" + number + "_" + method, .name = number, .alias = method, .draw = draw_it});
-  }
+  for (const auto* list : {&all_methods(), &added_methods()})
+    for (const Method& each : *list)
+      if (!each.info().linearized) figures.push_back(region_figure(each.name()));  // else of the one inside
   return figures;
 }
 

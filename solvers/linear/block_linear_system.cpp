@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "solvers/linear/coupled_stages.h"
+
 namespace springstab {
 
 BlockLinearSystem::BlockLinearSystem(std::vector<double> mass, RayleighDamping damping,
@@ -123,6 +125,18 @@ SolveReport BlockLinearSystem::solve_by_block_jacobi(const Shift& shift, Vector&
   SolveReport report = conjugate_gradient_.solve(apply, precondition, rhs_, out, solver);
   report.products = report.iterations * (own_damping_ ? 2 : 1);
   return report;
+}
+
+SolveReport BlockLinearSystem::solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
+                                             std::vector<Vector>& out) {
+  StructuralMatrices s;
+  s.stiffness = stiffness_.to_sparse();
+  s.mass = lumped_mass(mass_);
+  s.damping = damping_.d0 * s.mass + damping_.alpha * s.stiffness;
+  if (own_damping_) s.damping += own_damping_->to_sparse();
+  CoupledStages stages;
+  stages.factorize(coupling, s);
+  return stages.solve(s.mass, rhs, out);
 }
 
 double BlockLinearSystem::kinetic_energy(const Vector& v) {

@@ -4,11 +4,14 @@
 #include <optional>
 #include <stdexcept>
 
+#include "solvers/linear/coupled_stages.h"
+
 namespace springstab {
 
 struct MatrixSystem::Factors {
   Eigen::SimplicialLLT<SparseMatrix> mass, shifted;
   std::optional<Shift> shift;  // of `shifted`
+  CoupledStages coupled;
 };
 
 MatrixSystem::MatrixSystem(StructuralMatrices matrices)
@@ -49,6 +52,12 @@ SolveReport MatrixSystem::solve_shifted(const Shift& shift, const Vector& rhs, V
   force_.noalias() = matrices_.mass * rhs;
   out = factors_->shifted.solve(force_);
   return {};
+}
+
+SolveReport MatrixSystem::solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
+                                        std::vector<Vector>& out) {
+  if (!factors_->coupled.is_factorized(coupling)) factors_->coupled.factorize(coupling, matrices_);
+  return factors_->coupled.solve(matrices_.mass, rhs, out);
 }
 
 double MatrixSystem::kinetic_energy(const Vector& v) { return v.dot(matrices_.mass * v) / 2; }

@@ -27,6 +27,9 @@ class MatrixSystem final : public LinearSystem {
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
   SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
+  /// Takes K and D that are not symmetric, too.
+  SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
+                            std::vector<Vector>& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 

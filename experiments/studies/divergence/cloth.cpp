@@ -26,9 +26,9 @@ struct Case {
   double h_limit;
 };
 
-std::vector<Case> cases(double k0) {
+std::vector<Case> cases(double k0, const std::vector<Method>& methods) {
   std::vector<Case> all;
-  for (const Method& method : all_methods()) {
+  for (const Method& method : methods) {
     if (method.info().implicit) continue;
     const StabilityRegion& region = stability_region(method);
     const double designed = design_damping(region, k0, air_drag).alpha;
@@ -178,7 +178,7 @@ ClothStudy study_cloth(const std::string& name, Subject& subject, const ClothStu
   const State<Vector> start = subject.initial_state(options.seed);
   const double k0 = stiffest_mode(subject.structure(start).matrices, {.seed = options.seed}).value;
   ClothStudy study;
-  const std::vector<Case> all = cases(k0);
+  const std::vector<Case> all = cases(k0, options.methods);
   for (const Case& c : all) {
     append(study, name, c, journal.piece(name + ", " + c.damping + ", " + c.method.name(), [&] {
       scene.set_damping({c.modes.d0, c.modes.alpha});

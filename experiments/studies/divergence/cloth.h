@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method.h"
 #include "experiments/inputs/subject.h"
 #include "experiments/runs/journal.h"
 
@@ -43,6 +44,7 @@ struct ClothStudyOptions {
   long linear_steps = 4000;
   std::vector<double> ratios;  // ascending
   std::uint64_t seed = 1;
+  std::vector<Method> methods = all_methods();
 };
 
 /// Runs the scene under air drag alone, under Rayleigh damping with alpha = 1e-4 s, and under that fitted to

@@ -37,8 +37,8 @@ Json plane(const CommonOptions& common, const DivergenceOptions& options, Journa
            Progress& progress) {
   Json rows = Json::array();
   long methods = 0;
-  for (const Method& each : all_methods()) methods += !each.info().linearized;
-  for (const Method& each : all_methods()) {
+  for (const Method& each : options.methods) methods += !each.info().linearized;
+  for (const Method& each : options.methods) {
     if (each.info().linearized) continue;  // the region of the method inside
     const std::string method(each.name());
     const std::string path = options.output.empty() ? "" : options.output + "/divergence_" + method + ".csv";
@@ -57,7 +57,7 @@ std::vector<double> ratios(bool quick) {
 }
 
 ClothStudyOptions study_of(const CommonOptions& common, const DivergenceOptions& options) {
-  ClothStudyOptions study{.ratios = ratios(options.quick), .seed = common.seed};
+  ClothStudyOptions study{.ratios = ratios(options.quick), .seed = common.seed, .methods = options.methods};
   if (options.quick) study.duration = 0.2, study.linear_steps = 2000;
   return study;
 }
@@ -229,16 +229,18 @@ Json divergence(const CommonOptions& common, const DivergenceOptions& options) {
   return report_of(common, options, std::move(scenes), Journal::none());
 }
 
-static int run_divergence(const CommonOptions& common, const DivergenceOptions& options) {
+static int run_divergence(const CommonOptions& common, const DivergenceOptions& options,
+                          const std::string& names) {
   Scenes scenes = subjects(options);
   Json inputs = Json::array();
   for (const std::string& scene : options.scenes)
     inputs.push_back(contents_of(scene, options.earlier.resume));
-  const Json settings{{"pin", options.pin},
-                      {"cells", options.cells},
-                      {"steps", options.steps},
-                      {"quick", options.quick},
-                      {"seed", common.seed}};
+  Json settings{{"pin", options.pin},
+                {"cells", options.cells},
+                {"steps", options.steps},
+                {"quick", options.quick},
+                {"seed", common.seed}};
+  settings.update(method_settings(common, names));
   if (!options.output.empty()) make_folder(options.output);
   Journal journal(options.output, identity_of("divergence", settings, inputs), options.earlier, common.quiet);
   const Json report = report_of(common, options, std::move(scenes), journal);
@@ -256,10 +258,12 @@ namespace {
 struct TypedDivergenceOptions : DivergenceOptions {
   std::optional<int> given_cells{};
   std::optional<long> given_steps{};
+  std::string method_names{};
 
   DivergenceOptions resolved() const {
     DivergenceOptions all = *this;
     all.cells = given_cells.value_or(quick ? 100 : cells);
+    all.methods = methods_of(method_names);
     all.steps = given_steps.value_or(quick ? 500 : steps);
     return all;
   }
@@ -298,10 +302,13 @@ Subcommand divergence_command() {
            Option("--cells", &o->given_cells, "cells of the X-Y plane, per side")
                .with_default(std::to_string(o->cells)),
            Option("--steps", &o->given_steps, "steps of each cell").with_default(std::to_string(o->steps)),
+           methods_option(o->method_names),
            Option("--quick", &o->quick, "small scenes, few steps; 100 cells a side unless given"),
            Option("--output", &o->output, "folder for the CSV files").shown_as("DIR"),
            resume_option(o->earlier), overwrite_option(o->earlier)},
-      .run = [o](const CommonOptions& common) { return run_divergence(common, o->resolved()); }};
+      .run = [o](const CommonOptions& common) {
+        return run_divergence(common, o->resolved(), o->method_names);
+      }};
 }
 
 }  // namespace springstab

@@ -1,6 +1,7 @@
 // Theory against simulation, as data: what `springstab divergence` prints and its figures draw.
 #pragma once
 
+#include "analysis/method.h"
 #include "experiments/studies/figure_list.h"
 
 namespace springstab {
@@ -11,6 +12,7 @@ struct DivergenceOptions {
   int cells = 1000;                 // per side of the X-Y plane
   long steps = 1024;                // of each cell
   bool quick = false;
+  std::vector<Method> methods = all_methods();
   std::string output;  // folder, empty for none
   EarlierRun earlier;
 };

@@ -175,9 +175,9 @@ const ContestSeries& ContestResult::of(const std::string& name) const {
   throw std::invalid_argument("no contestant is called " + name);
 }
 
-std::vector<Contestant> method_contestants(Problem& problem) {
+std::vector<Contestant> method_contestants(Problem& problem, const std::vector<Method>& methods) {
   std::vector<Contestant> contestants;
-  for (const Method& each : all_methods()) {
+  for (const Method& each : methods) {
     const std::optional<double> limit = problem.limit(each.name());
     const std::string method(each.name());
     const bool iterates = each.info().implicit && problem.scene();
@@ -206,7 +206,7 @@ ContestResult run_contest(Problem& problem, const std::string& cache, const Cont
                        .reference = reference_motion(problem, cache),
                        .options = options,
                        .series = {}};
-  std::vector<Contestant> contestants = method_contestants(problem);
+  std::vector<Contestant> contestants = method_contestants(problem, options.methods);
   if (options.libraries && !problem.is_designed())  // libraries have no step to fit damping to
     for (Contestant& peer : peer_contestants(problem)) contestants.push_back(std::move(peer));
   Climb climb(problem, result.reference, options, journal);

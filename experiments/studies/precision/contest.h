@@ -46,6 +46,7 @@ struct ContestOptions {
   double time_limit = 0.5;  // of one run, CPU seconds
   int repetitions = 5;      // that are timed, after one that is not
   bool libraries = true;    // but not where the damping is fitted to a step
+  std::vector<Method> methods = all_methods();
 };
 
 struct ContestRun {
@@ -80,11 +81,12 @@ struct ContestResult {
   const ContestSeries& of(const std::string& name) const;
 };
 
-/// All methods of the project; implicit Euler on scenes once for each tolerance of its conjugate gradients.
+/// These methods; implicit ones on scenes once for each tolerance of its conjugate gradients.
 /// Steps begin just above a known limit, then 0.99 of it and halves; where no limit is known (or none is
 /// stable), at twice symplectic Euler's; where nothing limits them, at a sixteenth of the duration. All are
 /// such that whole steps and whole linearizations end at the trajectory's samples.
-std::vector<Contestant> method_contestants(Problem& problem);
+std::vector<Contestant> method_contestants(Problem& problem,
+                                           const std::vector<Method>& methods = all_methods());
 
 /// In one linearization of the linearized methods.
 inline constexpr long contest_steps_per_linearization = 8;

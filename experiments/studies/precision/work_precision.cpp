@@ -25,6 +25,7 @@ struct WorkPrecisionOptions {
   int repetitions = 5;
   std::string damping = "own";
   bool libraries = true;
+  std::string methods;        // see methods_option
   std::string plots, output;  // folders; no output: nothing is written
   EarlierRun earlier;
 };
@@ -98,6 +99,7 @@ void print(const ContestResult& result, const Problem& problem) {
 
 int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& options) {
   check(options);
+  const std::vector<Method> methods = methods_of(options.methods);
   Subject subject(options.input);
   print_mesh_notes(subject);
   print_size_warning(subject);
@@ -107,9 +109,10 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
     problem.design_damping();
   }
   if (!options.output.empty()) make_folder(options.output);
-  const Json settings{{"duration", options.duration},     {"damping", options.damping},
-                      {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
-                      {"libraries", options.libraries},   {"seed", common.seed}};
+  Json settings{{"duration", options.duration},     {"damping", options.damping},
+                {"time-limit", options.time_limit}, {"repetitions", options.repetitions},
+                {"libraries", options.libraries},   {"seed", common.seed}};
+  settings.update(method_settings(common, options.methods));
   Journal journal(options.output,
                   identity_of("work-precision", settings, contents_of(options.input, options.earlier.resume)),
                   options.earlier, common.quiet);
@@ -118,7 +121,7 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
     std::cerr << "springstab: left out, for they were not found when this was built: " << missing << '\n';
   const ContestResult result =
       run_contest(problem, options.output.empty() ? "" : options.output + "/references",
-                  {options.time_limit, options.repetitions, options.libraries}, common, journal);
+                  {options.time_limit, options.repetitions, options.libraries, methods}, common, journal);
   Json files = Json::array();
   if (!options.output.empty())
     for (const std::string& file :
@@ -170,6 +173,7 @@ Subcommand work_precision_command() {
                .shown_as("[CPU s]")
                .with_default(),
            Option("--repetitions", &o->repetitions, "timed runs, after one that is not").with_default(),
+           methods_option(o->methods),
            Option("!--no-libraries", &o->libraries, "without SUNDIALS, GSL and Boost.odeint"),
            Option("--output", &o->output, "folder for the runs as CSV, the figure, and the reference")
                .shown_as("DIR"),

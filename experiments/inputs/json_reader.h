@@ -1,0 +1,30 @@
+// What the readers of JSON files have in common: keys that are known, and messages that say where.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiments/inputs/json_with_lines.h"
+
+namespace springstab {
+
+class JsonReader {
+ public:
+  /// The name of the file in messages; it is kept by reference.
+  explicit JsonReader(const std::string& source) : source_(source) {}
+
+ protected:
+  /// Throws InputError.
+  [[noreturn]] void fail(long line, const std::string& message) const;
+  [[noreturn]] void wrong(const JsonValue& json, const std::string& expected) const;
+
+  /// Nothing but these keys, none of them twice.
+  void expect_members(const JsonValue& object, const std::vector<std::string_view>& known) const;
+  /// Null where there is none.
+  static const JsonValue* find(const JsonValue& object, std::string_view key);
+
+  const std::string& source_;
+};
+
+}  // namespace springstab

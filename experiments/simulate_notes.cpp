@@ -21,6 +21,9 @@ void print_unused_options(const CommonOptions& common, const SimulateOptions& op
   unused("--cg-tolerance", !method.implicit, name + " solves no linear system") ||
       unused("--cg-tolerance", matrices, "systems of matrices are solved directly") ||
       unused("--cg-tolerance", options.direct, "--solver direct is exact");
+  unused("--newton", !method.implicit, name + " solves no equations") ||
+      unused("--newton", matrices, "one Newton step solves linear equations") ||
+      unused("--newton", !Method(name).stepper()->set_newton({}), name + " takes the rest explicitly");
   unused("--safety", options.step.has_value(), "--step is given");
   for (const char* option : {"--format", "--frames"})
     unused(option, options.output.empty(), "without --output nothing is written");

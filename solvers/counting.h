@@ -52,13 +52,19 @@ class CountingSystem final : public System {
       target->damping_times(u, out);
     }
     SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override {
-      const SolveReport report = target->solve_shifted(shift, rhs, out);
+      return counted(target->solve_shifted(shift, rhs, out));
+    }
+    SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override {
+      return counted(target->solve_damping(part, h, rhs, out));
+    }
+    double kinetic_energy(const Vector& v) override { return target->kinetic_energy(v); }
+    double potential_energy(const Vector& x) override { return target->potential_energy(x); }
+
+    SolveReport counted(const SolveReport& report) {
       counts->cg_iterations += report.iterations;
       counts->block_products += report.products;
       return report;
     }
-    double kinetic_energy(const Vector& v) override { return target->kinetic_energy(v); }
-    double potential_energy(const Vector& x) override { return target->potential_energy(x); }
 
     std::shared_ptr<Counts> counts;
     Linearization<Vector> target;

@@ -21,6 +21,9 @@ struct Oscillator {
     out = rhs / (shift.mass + shift.damping * d + shift.stiffness * k);
     return {};
   }
+  SolveReport solve_damping(DampingPart, double h, const V& rhs, V& out) const {
+    return solve_shifted({1, h, 0}, rhs, out);
+  }
   void linearize(const V&, const V&, Linearization<V>& linear) const { linear = this; }
 };
 

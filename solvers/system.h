@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <concepts>
 #include <memory>
+#include <stdexcept>
 
 #include "solvers/state.h"
 
@@ -23,6 +24,10 @@ struct Shift {
   }
   friend bool operator==(const Shift&, const Shift&) = default;
 };
+
+/// The part D_i of the damping that a method takes implicitly, of what the system offers for that: all of D
+/// unless it says otherwise.
+enum class DampingPart { all, diagonal };
 
 /// How a solve with m + dD' + kK' went.
 struct SolveReport {
@@ -94,6 +99,13 @@ class LinearSystem : public System {
   virtual void damping_times(const Vector& u, Vector& out) = 0;    // out = D'u
   /// Solves (m + dD' + kK') out = rhs, starting from zero where it iterates.
   virtual SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) = 0;
+  /// Solves (1 + hD_i') out = rhs: of the diagonal, M and D_i being matrices, (M + h diag D_i) out = M rhs.
+  /// Throws std::invalid_argument where a system does not know its diagonal.
+  virtual SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) {
+    if (part == DampingPart::diagonal)
+      throw std::invalid_argument("this system does not tell the diagonal of its damping, expected part=all");
+    return solve_shifted({1, h, 0}, rhs, out);
+  }
   /// Itself, not a copy: it has to outlive its linearization.
   void linearize(const Vector&, const Vector&, Linearization<Vector>& linear) override {
     linear = Linearization<Vector>(Linearization<Vector>(), this);

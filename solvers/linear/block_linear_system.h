@@ -38,6 +38,7 @@ class BlockLinearSystem final : public LinearSystem {
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
   SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
+  SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 

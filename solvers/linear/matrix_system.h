@@ -27,11 +27,14 @@ class MatrixSystem final : public LinearSystem {
   void stiffness_times(const Vector& u, Vector& out) override;
   void damping_times(const Vector& u, Vector& out) override;
   SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
+  SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 
  private:
   struct Factors;
+
+  SolveReport solve_factored(const Vector& rhs, Vector& out);
 
   StructuralMatrices matrices_;
   std::unique_ptr<Factors> factors_;

@@ -12,7 +12,7 @@
 
 namespace springstab {
 
-inline constexpr Eigen::Index transition_limit_rows = 800;
+inline constexpr Eigen::Index transition_limit_rows = 400;
 
 /// The largest H such that at every 0 < h < H no more eigenvalues of A(h) are outside the unit circle than
 /// `modes`, all eigenvalues of the generator, have with Re μ > 0: an estimate, since h is sampled, a third

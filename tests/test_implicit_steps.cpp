@@ -156,6 +156,20 @@ BOOST_AUTO_TEST_CASE(matrices_take_the_part_that_a_method_asks_for) {
   }
 }
 
+BOOST_AUTO_TEST_CASE(without_damping_no_part_of_it_is_missed) {
+  RandomMatrices random(6);
+  const Eigen::MatrixXd k = random.semidefinite(4, 4), none = Eigen::MatrixXd::Zero(4, 4);
+  MatrixSystem system(prepare(sparse(k)));
+  State<Vector> state{random.vector(4), random.vector(4), {}};
+  const Vector v = kicked(k, Eigen::MatrixXd::Identity(4, 4), none, none, 0.1, state);
+  BOOST_REQUIRE((Method(diagonal).stepper()->step(system, 0.1, state) == StepStatus::done));
+  BOOST_TEST((state.v - v).norm() <= 1e-14 * v.norm());
+  GeneralDamping limits(system.matrices(), stiffest_mode(system.matrices()),
+                        {.kind = DampingModel::Kind::general}, 1.5, true);
+  BOOST_TEST(limits.limits(diagonal).h_max.value() == limits.limits("symplectic-euler").h_max.value(),
+             tolerance(1e-6));
+}
+
 BOOST_AUTO_TEST_CASE(scenes_and_chains_take_the_diagonal_of_their_matrices) {
   RandomMatrices random(2);
   const double h = 0.004;

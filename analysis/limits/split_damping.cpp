@@ -52,7 +52,7 @@ StructuralMatrices with_effective_damping(const Method& method, const Structural
   const HalfPlane free = explicit_condition(method);
   const double implicit_too = free.bound - at_minus_one(method, 1, 1, 0);  // (1 + r) x
   StructuralMatrices effective = s;
-  effective.damping = s.damping + (implicit_too / free.x - 1) * part_of(method, s);
+  if (s.has_damping()) effective.damping = s.damping + (implicit_too / free.x - 1) * part_of(method, s);
   effective.implicit_damping = {};
   return effective;
 }

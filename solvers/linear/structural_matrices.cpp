@@ -204,6 +204,7 @@ bool is_diagonal(const SparseMatrix& a) {
 
 SparseMatrix implicit_damping(const StructuralMatrices& s, DampingPart part) {
   const SparseMatrix& offered = s.says_implicit() ? s.implicit_damping : s.damping;
+  if (offered.size() == 0) return {s.size(), s.size()};
   if (part == DampingPart::all) return offered;
   return SparseMatrix(Eigen::VectorXd(offered.diagonal()).asDiagonal());
 }

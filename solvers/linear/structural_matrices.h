@@ -28,7 +28,7 @@ struct StructuralMatrices {
   bool says_implicit() const { return implicit_damping.size() > 0; }
 };
 
-/// D_i, which a method takes implicitly that asks for this part (solvers/system.h).
+/// D_i, n x n, which a method takes implicitly that asks for this part (solvers/system.h).
 SparseMatrix implicit_damping(const StructuralMatrices& s, DampingPart part);
 
 /// Checks the matrices (square, of one size, finite, a_ij and a_ji apart by at most 1e-10 of the larger or of

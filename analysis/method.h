@@ -66,12 +66,16 @@ class Method {
   }
 
   /// The transition matrix, mn x mn over (x, v, carried ...), of one step of length 1 of x'' = -Kx - Dv with
-  /// every term taken as positive: |K|, |D| entry by entry, differences as sums, factors by their size. An
-  /// entry computed in floating point is off by at most a few roundings of it. Nothing for methods that need
-  /// more of a system than its accelerations.
+  /// every term taken as positive: |K|, |D| entry by entry, differences as sums, factors by their size, a
+  /// solution by a bound on it and on the rounding of its factorization. An entry computed in floating point
+  /// is off by at most a few roundings of it. Nothing for methods that need more of a system than
+  /// MagnitudeSystem has, and where a solve fails.
+  std::optional<Eigen::MatrixXd> magnitude(const SizedMatrices& matrices) const {
+    return self_->magnitude(matrices);
+  }
   std::optional<Eigen::MatrixXd> magnitude(const Eigen::MatrixXd& stiffness,
                                            const Eigen::MatrixXd& damping) const {
-    return self_->magnitude(stiffness, damping);
+    return magnitude({stiffness, damping, stiffness.cwiseAbs(), damping.cwiseAbs()});
   }
   bool has_magnitude() const { return self_->has_magnitude(); }
 
@@ -95,8 +99,7 @@ class Method {
     virtual void radii(std::span<const double> x, std::span<const double> y, std::span<double> rho) const = 0;
     virtual void fates(std::span<const double> x, std::span<const double> y, long steps, double threshold,
                        std::span<CellFate> fate) const = 0;
-    virtual std::optional<Eigen::MatrixXd> magnitude(const Eigen::MatrixXd& stiffness,
-                                                     const Eigen::MatrixXd& damping) const = 0;
+    virtual std::optional<Eigen::MatrixXd> magnitude(const SizedMatrices& matrices) const = 0;
     virtual bool has_magnitude() const = 0;
   };
 
@@ -121,9 +124,8 @@ class Method {
                std::span<CellFate> fate) const override {
       fates_of(description, x, y, steps, threshold, fate);
     }
-    std::optional<Eigen::MatrixXd> magnitude(const Eigen::MatrixXd& stiffness,
-                                             const Eigen::MatrixXd& damping) const override {
-      return step_magnitude(description, stiffness, damping);
+    std::optional<Eigen::MatrixXd> magnitude(const SizedMatrices& matrices) const override {
+      return step_magnitude(description, matrices);
     }
     bool has_magnitude() const override { return has_step_magnitude<Description>; }
   };

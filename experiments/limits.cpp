@@ -128,6 +128,23 @@ void print_growth(const std::vector<Row>& rows) {
     std::cout << "\nstable at the step to use, but √energy may first grow by a factor of: " << list << '\n';
 }
 
+// What a method does of itself, whatever the structure.
+void print_method_notes(const std::vector<Row>& rows) {
+  std::string amplifying;
+  bool verlet = false;
+  for (const Row& row : rows) {
+    if (amplifies_without_need(row.method))
+      amplifying += (amplifying.empty() ? "" : ", ") + std::string(row.method);
+    verlet = verlet || row.method == "velocity-verlet";
+  }
+  if (!amplifying.empty())
+    std::cout << "\namplifies with these parameters, undamped motion grows at every step: " << amplifying
+              << '\n';
+  if (verlet)
+    std::cout << "\nvelocity-verlet: each half kick with the damping of its own start. " << leapfrog_words
+              << '\n';
+}
+
 // Why nothing is proved, where the status does not say it.
 void print_reasons(const std::vector<Row>& rows) {
   std::map<std::string_view, std::string> methods;
@@ -208,6 +225,7 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
         "for the other modes\n",
         1 / rate, rate);
   print_growth(rows);
+  print_method_notes(rows);
   print_reasons(rows);
   for (const auto& [method, limits] : rows)
     if (limits.every_pose)

@@ -33,6 +33,9 @@ Subcommand limits_command() {
           "tetrahedra (.msh, .veg, .vtk); its texture_map, by which factor the cloth differs from it at "
           "most.\n"
           "extent [m], total_mass [kg] and springs are those of the scene at rest.\n"
+          "" +
+          std::string(leapfrog_words) +
+          "\n"
           "Exit status 3: the --method asked for has no stable step.\n\n"
           "examples: springstab limits --grid 32x32 --pin first-row\n"
           "          springstab limits skirt.obj --method symplectic-euler --json\n"

@@ -57,7 +57,8 @@ int run_methods(const CommonOptions& common, const std::string& names) {
   } else {
     std::cout << "\nY = h²k and X = hd of one mode. Explicit Euler with damping α = h takes the same steps "
                  "as symplectic\n"
-                 "Euler without it: the damping that stabilizes it damps nothing.\n";
+                 "Euler without it: the damping that stabilizes it damps nothing.\n"
+              << leapfrog_words << '\n';
   }
   return done;
 }
@@ -71,7 +72,9 @@ Subcommand methods_command() {
           .footer =
               "Y_max: largest stable Y = h^2 k over all damping, and the X = h d where it is; real axis: "
               "largest\n"
-              "stable X at Y = 0; imaginary axis: largest stable h*sqrt(k) without damping.\n\n"
+              "stable X at Y = 0; imaginary axis: largest stable h*sqrt(k) without damping.\n" +
+              std::string(leapfrog_words) +
+              "\n\n"
               "examples: springstab methods --json\n"
               "          springstab methods --methods all",
           .options = {methods_option(*names)},

@@ -227,6 +227,8 @@ static int run_region(const CommonOptions& common, const RegionOptions& options)
   } else {
     std::cout << "  largest Y   unbounded\n";
   }
+  if (c.y_max > 0 && amplifies_without_need(options.method))
+    std::cout << "  undamped    motion grows at every step: the method amplifies\n";
   std::cout << text("  area        %.12g inside the window\n", area)
             << text("  cells       %ld stable, %ld neutral of %zu\n", stable, neutral, radii.size());
   if (report.contains("simulated")) {

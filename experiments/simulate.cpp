@@ -22,6 +22,7 @@ namespace springstab {
 namespace {
 
 constexpr int most_frames = 10'000'000;
+constexpr int most_newton_steps = 100;
 
 void check(const SimulateOptions& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
@@ -37,6 +38,8 @@ void check(const SimulateOptions& options) {
   if (!(options.cg_tolerance > 0 && options.cg_tolerance < 1))
     throw InputError("--cg-tolerance", 0,
                      text("is %g, expected more than 0 and less than 1", options.cg_tolerance));
+  if (options.newton < 1 || options.newton > most_newton_steps)
+    throw InputError("--newton", 0, text("is %d, expected 1 to %d", options.newton, most_newton_steps));
   if (options.frames < 1 || options.frames > most_frames)
     throw InputError("--frames", 0, text("is %d, expected 1 to %d", options.frames, most_frames));
   if (options.earlier.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
@@ -61,6 +64,7 @@ Json identity(const CommonOptions& common, const SimulateOptions& o) {
                 {"frames", o.frames},
                 {"keep-diverged", o.keep_diverged},
                 {"seed", common.seed}};
+  if (o.newton != 1) settings["newton"] = o.newton;
   settings.update(method_settings(common));
   return identity_of("simulate", settings, contents_of(o.input, o.earlier.resume));
 }
@@ -122,6 +126,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   const double cpu_before = cpu_seconds() - (resumed ? others.at("cpu_seconds").get<double>() : 0);
   course.end = std::move(begin.state);
   const auto stepper = Method(options.method).stepper();
+  if (subject.scene()) stepper->set_newton({.steps = options.newton});
   if (!resumed) stepper->start(counted, plan.h, course.end);
   Progress progress("simulating", common.quiet);
   course.result = resume_simulation(

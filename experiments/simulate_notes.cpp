@@ -17,10 +17,14 @@ void print_unused_options(const CommonOptions& common, const SimulateOptions& op
   const std::string& name = options.method;
   unused("--relinearize", !method.linearized, name + " freezes no forces");
   unused("--hessian", !method.linearized && !method.implicit, name + " takes its steps without K");
-  unused("--solver", !method.implicit, name + " solves no linear system");
-  unused("--cg-tolerance", !method.implicit, name + " solves no linear system") ||
+  const bool solves = method.implicit && method.implicit_damping != DampingPart::diagonal;
+  unused("--solver", !solves, name + " solves no linear system");
+  unused("--cg-tolerance", !solves, name + " solves no linear system") ||
       unused("--cg-tolerance", matrices, "systems of matrices are solved directly") ||
       unused("--cg-tolerance", options.direct, "--solver direct is exact");
+  unused("--newton", !method.implicit, name + " solves no equations") ||
+      unused("--newton", matrices, "one Newton step solves linear equations") ||
+      unused("--newton", !Method(name).stepper()->set_newton({}), name + " takes the rest explicitly");
   unused("--safety", options.step.has_value(), "--step is given");
   for (const char* option : {"--format", "--frames"})
     unused(option, options.output.empty(), "without --output nothing is written");

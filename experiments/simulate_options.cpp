@@ -34,6 +34,9 @@ Subcommand simulate_command() {
           "and springs are those of the scene at rest; with --keep-diverged, diverged_frames of the last "
           "frames "
           "are single steps.\n"
+          "" +
+          std::string(leapfrog_words) +
+          "\n"
           "Exit status 3: no stable step, or a linear solve failed; 4: the run diverged.\n\n"
           "example: springstab simulate --grid 32x32 --pin first-row --method symplectic-euler --duration 2 "
           "--output drape\n"
@@ -64,11 +67,16 @@ Subcommand simulate_command() {
            Option("--format", &o->format, "of the frames: obj or vtk").one_of({"obj", "vtk"}).with_default(),
            Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
            Option("--solver", &o->solver,
-                  "of implicit Euler's linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")
+                  "of implicit methods' linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")
                .one_of({"cg", "direct"})
                .with_default(),
            Option("--cg-tolerance", &o->cg_tolerance,
-                  "relative residual of implicit Euler's conjugate gradients")
+                  "relative residual of implicit methods' conjugate gradients")
+               .with_default(),
+           Option("--newton", &o->newton,
+                  "of implicit methods: at most so many Newton steps within a step; fewer where a correction "
+                  "is below 1e-10 of what it corrects")
+               .shown_as("N")
                .with_default(),
            Option("--keep-diverged", &o->keep_diverged,
                   "of a run that diverges, also record every one of its last 32 steps before that"),

@@ -24,6 +24,7 @@ struct SimulateOptions {
   std::string format = "obj";
   int frames = 100;
   double cg_tolerance = 1e-6;
+  int newton = 1;       // steps of Newton's method within an implicit step
   bool direct = false;  // a factorization instead of conjugate gradients
   bool keep_diverged = false;
   EarlierRun earlier;

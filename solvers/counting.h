@@ -52,10 +52,10 @@ class CountingSystem final : public System {
       target->damping_times(u, out);
     }
     SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override {
-      const SolveReport report = target->solve_shifted(shift, rhs, out);
-      counts->cg_iterations += report.iterations;
-      counts->block_products += report.products;
-      return report;
+      return counted(target->solve_shifted(shift, rhs, out));
+    }
+    SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override {
+      return counted(target->solve_damping(part, h, rhs, out));
     }
     SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
                               std::vector<Vector>& out) override {
@@ -63,6 +63,12 @@ class CountingSystem final : public System {
     }
     double kinetic_energy(const Vector& v) override { return target->kinetic_energy(v); }
     double potential_energy(const Vector& x) override { return target->potential_energy(x); }
+
+    SolveReport counted(const SolveReport& report) {
+      counts->cg_iterations += report.iterations;
+      counts->block_products += report.products;
+      return report;
+    }
 
     std::shared_ptr<Counts> counts;
     Linearization<Vector> target;

@@ -42,6 +42,9 @@ struct Oscillator {
     }
     return {};
   }
+  SolveReport solve_damping(DampingPart, double h, const V& rhs, V& out) const {
+    return solve_shifted({1, h, 0}, rhs, out);
+  }
   void linearize(const V&, const V&, Linearization<V>& linear) const { linear = this; }
 
  private:

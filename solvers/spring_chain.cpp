@@ -105,6 +105,14 @@ SolveReport SpringChain::solve_shifted(const Shift& shift, const Vector& rhs, Ve
   return report;
 }
 
+SolveReport SpringChain::solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) {
+  if (part == DampingPart::all) return solve_shifted({1, h, 0}, rhs, out);
+  const Eigen::Index n = size();
+  sum_ = (1 + h * damping_.d0) * mass_ + h * damping_.alpha * (stiffness_.head(n) + stiffness_.tail(n));
+  out = mass_.cwiseProduct(rhs).cwiseQuotient(sum_);
+  return {};
+}
+
 double SpringChain::kinetic_energy(const Vector& v) { return v.cwiseAbs2().dot(mass_) / 2; }
 
 double SpringChain::potential_energy(const Vector& x) {

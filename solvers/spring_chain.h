@@ -35,6 +35,7 @@ class SpringChain final : public LinearSystem {
   /// By an LDLᵀ factorization, which is kept while the shift stays the same. It passes over the chain twice
   /// and is reported as one product.
   SolveReport solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) override;
+  SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "solvers/methods/method_info.h"
+#include "solvers/methods/newton.h"
 #include "solvers/system.h"
 
 namespace springstab {
@@ -28,6 +29,8 @@ class Stepper {
   /// linearized method one linearization serves `steps_per_linearization` >= 1 steps from now on; the others
   /// have no use for the number.
   virtual void restart(long steps_per_linearization) = 0;
+  /// How many Newton steps an implicit step takes from now on. Whether the method has a use for that.
+  virtual bool set_newton(const NewtonOptions& options) = 0;
 };
 
 /// Makes state.memory the `memory` vectors that the steps carry from this x and v on.
@@ -63,6 +66,13 @@ class StepperOf final : public Stepper {
   }
   void restart(long steps_per_linearization) override {
     if constexpr (requires(Steps & s) { s.restart(1L); }) steps_.restart(steps_per_linearization);
+  }
+  bool set_newton(const NewtonOptions& options) override {
+    if constexpr (requires(Steps & s) { s.set_newton(options); }) {
+      return steps_.set_newton(options);
+    } else {
+      return false;
+    }
   }
 
  private:

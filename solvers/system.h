@@ -30,6 +30,9 @@ struct Shift {
 struct StageCoupling {
   Eigen::MatrixXd damping, stiffness;
 };
+/// The part D_i of the damping that a method takes implicitly, of what the system offers for that: all of D
+/// unless it says otherwise.
+enum class DampingPart { all, diagonal };
 
 /// How a solve with m + dD' + kK' went.
 struct SolveReport {
@@ -108,6 +111,13 @@ class LinearSystem : public System {
     throw std::invalid_argument(
         "a fully implicit method solves for all stages together, expected a system that has K and D as "
         "matrices");
+  }
+  /// Solves (1 + hD_i') out = rhs: of the diagonal, M and D_i being matrices, (M + h diag D_i) out = M rhs.
+  /// Throws std::invalid_argument where a system does not know its diagonal.
+  virtual SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) {
+    if (part == DampingPart::diagonal)
+      throw std::invalid_argument("this system does not tell the diagonal of its damping, expected part=all");
+    return solve_shifted({1, h, 0}, rhs, out);
   }
   /// Itself, not a copy: it has to outlive its linearization.
   void linearize(const Vector&, const Vector&, Linearization<Vector>& linear) override {

@@ -56,6 +56,18 @@ struct Theta {
   };
 };
 
+/// The same, of which no magnitude is known.
+struct Bare : Theta {
+  template <class V>
+  struct Steps : Theta::Steps<V> {
+    using Theta::Steps<V>::Steps;
+    template <Linearizable<V> System>
+    requires(!std::is_same_v<V, Magnitude>) StepStatus step(System& system, double h, State<V>& state) {
+      return Theta::Steps<V>::step(system, h, state);
+    }
+  };
+};
+
 /// Of order 2 with two stages, as RK2, and so of the same stability function.
 struct Ralston {
   MethodInfo info() const { return {"ralston", "Ralston", 2, false}; }
@@ -366,7 +378,9 @@ BOOST_AUTO_TEST_CASE(methods_of_one_name_and_other_parameters_do_not_share) {
   // θ < ½ ends where |R| = 1 on the real axis: z = -2/(1 - 2θ)
   BOOST_TEST(stability_region(third).constants().real_interval == 6, boost::test_tools::tolerance(1e-12));
   BOOST_TEST(&inscribed_polygons(midpoint) != &inscribed_polygons(euler));
-  BOOST_TEST((!euler.has_magnitude() && !euler.magnitude(Dense::Ones(1, 1), Dense::Ones(1, 1))));
+  const Method bare = make_method(Bare{{0.5}});
+  BOOST_TEST((euler.has_magnitude() && euler.magnitude(Dense::Ones(1, 1), Dense::Ones(1, 1))));
+  BOOST_TEST((!bare.has_magnitude() && !bare.magnitude(Dense::Ones(1, 1), Dense::Ones(1, 1))));
   SpringChain system = chain();
   const Dense one = as_dense(transition_operator(system, euler, 0.3)),
               other = as_dense(transition_operator(system, "implicit-euler", 0.3));
@@ -387,7 +401,7 @@ BOOST_AUTO_TEST_CASE(where_there_is_no_magnitude_there_is_no_lyapunov_proof_and_
   s.damping = damper;
   const StiffestMode k0 = stiffest_mode(s);
   GeneralDamping limits(s, k0, classify_damping(s), 1.5, true);
-  const MethodLimits none = limits.limits(make_method(Theta{0.2}));
+  const MethodLimits none = limits.limits(make_method(Bare{{0.2}}));
   BOOST_TEST(!none.h_certified);
   BOOST_TEST(none.unproved.find("Lyapunov") != std::string_view::npos);
 }

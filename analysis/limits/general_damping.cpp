@@ -5,6 +5,7 @@
 #include <span>
 
 #include "analysis/constants.h"
+#include "analysis/limits/split_damping.h"
 #include "analysis/spectra/generator_spectrum.h"
 #include "analysis/spectra/transition_limit.h"
 
@@ -16,8 +17,8 @@ constexpr double near_enough = 0.9;  // certified / estimate
 constexpr std::string_view no_step = "no positive step is stable";
 
 // The positive root of a h d + b h² k = c, without cancellation; ∞ where there is none.
-double root(double a, double b, double c, const ModePoint& p) {
-  const double linear = a * std::max(p.d, 0.0), quadratic = b * std::max(p.k, 0.0);
+double root(double a, double b, double c, const ModePoint& p, bool signed_damping) {
+  const double linear = a * (signed_damping ? p.d : std::max(p.d, 0.0)), quadratic = b * std::max(p.k, 0.0);
   const double discriminant = std::hypot(linear, 2 * std::sqrt(c * quadratic));
   if (linear < 0) return quadratic > 0 ? (discriminant - linear) / (2 * quadratic) : infinity;
   return 2 * c / (linear + discriminant);
@@ -46,7 +47,7 @@ StructuralMatrices stiffened(const StructuralMatrices& s, const Stiffening& stif
 // has the root to second order. The way there needs no accurate eigenvectors. With a < 0, too, every vector's
 // steps are those below its one positive root.
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
-                                  const Stiffening& stiffening) {
+                                  const Stiffening& stiffening, bool signed_damping) {
   const auto& [a, b, c] = condition;
   // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
   constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-7, stiffened = 1e-5;
@@ -56,7 +57,8 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
   for (const auto& [x, y] : {std::pair{0.0, 1.0}, {1.0, 0.0}}) {
     const std::optional<ExtremePoint> p = range.farthest(x, y, first);
     if (!p) return std::nullopt;
-    if (const double next = root(a, b, c, stiffening(*p)); next < h) h = next, near = p->vector;
+    if (const double next = root(a, b, c, stiffening(*p), signed_damping); next < h)
+      h = next, near = p->vector;
   }
   double tolerance = loose;
   for (int i = 0; i < 50 && std::isfinite(h); ++i) {
@@ -65,7 +67,7 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
         range.farthest(x, x * stiffening.added_damping + y * stiffening.factor, tolerance, near);
     if (!p) return std::nullopt;
     near = p->vector;
-    const double next = std::min(h, root(a, b, c, stiffening(*p)));
+    const double next = std::min(h, root(a, b, c, stiffening(*p), signed_damping));
     const double change = 1 - next / h;
     h = next;
     if (tolerance == last && change < 1e-6) break;  // the next change is about its square
@@ -103,15 +105,24 @@ std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane&
 GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0,
                                const DampingModel& damping, double safety, bool proofs,
                                const ArpackOptions& options)
-    : k0_(k0), damping_(damping), safety_(safety), proofs_(proofs), s_(s), certified_(s, options) {}
+    : k0_(k0),
+      damping_(damping),
+      safety_(safety),
+      proofs_(proofs),
+      s_(s),
+      options_(options),
+      certified_(s, options) {}
 
+// One result serves all methods whose eigenvalues follow from the same region in the same way.
 MethodLimits GeneralDamping::limits(const Method& method) {
   const StabilityRegion& region = stability_region(method);
+  const bool shared = region.matrix_form() != MatrixForm::none && !takes_part(method, s_);
   for (const auto& [other, limits] : known_)
-    if (region.same_conditions(*other)) return limits;
+    if (shared && region.matrix_form() == other->matrix_form() && region.same_conditions(*other))
+      return limits;
   MethodLimits limits = compute(method);
   keep_margin(safety_, limits);
-  known_.emplace_back(&region, limits);
+  if (shared) known_.emplace_back(&region, limits);
   return limits;
 }
 
@@ -122,12 +133,18 @@ MethodLimits GeneralDamping::compute(const Method& method) {
     limits = {};
     limits.unproved = "K or D is not symmetric";
   }
+  if (takes_part(method, s_)) {
+    if (limits.unproved.empty()) add_split(method, limits);
+    return limits;
+  }
   if (!limits.unproved.empty()) {
     add_estimate(method, limits);
     return limits;
   }
   if (limits.status != LimitStatus::unknown) return limits;
   if (stability_region(method).matrix_form() == MatrixForm::none) {
+    limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
+    if (method.size() * s_.size() <= transition_limit_rows) add_estimate(method, limits);
     add_proved_at_one_step(method, limits);
     return limits;
   }
@@ -178,6 +195,29 @@ void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits)
   if (std::isfinite(least)) limits.recommended = least;
 }
 
+// What is implicit of the damping enters the condition with the other sign.
+void GeneralDamping::add_split(const Method& method, MethodLimits& limits) {
+  if (!is_semidefinite(implicit_damping(s_, *method.info().implicit_damping), s_.mass)) {
+    limits.unproved = "the damping to be taken implicitly is indefinite";
+    return;
+  }
+  const HalfPlane condition = explicit_condition(method);
+  double least = infinity;
+  for (const Stiffening& stiffening : stiffenings()) {
+    const StructuralMatrices s = with_effective_damping(method, stiffened(s_, stiffening));
+    const std::optional<double> h = exact_limit(NumericalRange(s, options_), condition, {}, true);
+    if (!h) return;
+    if (!limits.h_max) {
+      limits.h_max = *h;
+      DefinitenessProof proof(s);
+      if (proofs_) set_certified(proved_limit(proof, condition, *h), Proof::matrix_condition, limits);
+    }
+    least = std::min(least, *h);
+  }
+  limits.status = std::isinf(*limits.h_max) ? LimitStatus::unlimited : LimitStatus::limited;
+  if (std::isfinite(least)) limits.recommended = least;
+}
+
 void GeneralDamping::add_certified(const Method& method, MethodLimits& limits) {
   if (proofs_) set_certified(certified_.certified(method), Proof::polygon, limits);
   double least = limits.h_certified.value_or(infinity);
@@ -214,9 +254,10 @@ void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
   const std::vector<Stiffening> all = stiffenings();
   for (std::size_t i = 0; i < spectra_.size() && spectra_[i]; ++i) {
     if (semidefinite && growth_rate(*spectra_[i]) > 0) return;  // which cannot be: rounding is large
-    const std::optional<double> h = stability_region(method).matrix_form() == MatrixForm::stability_function
-                                        ? critical_step(method, *spectra_[i])
-                                        : transition_limit(method, stiffened(s_, all[i]), *spectra_[i]);
+    const bool has_function = stability_region(method).matrix_form() == MatrixForm::stability_function;
+    std::optional<double> h = has_function ? critical_step(method, *spectra_[i])
+                                           : transition_limit(method, stiffened(s_, all[i]), *spectra_[i]);
+    if (h && semidefinite && !has_function) h = std::min(*h, undamped_limit(method, *spectra_[i]));
     if (h == 0 && i == 0) {
       limits.status = LimitStatus::none;
       limits.unproved = no_step;
@@ -266,17 +307,27 @@ void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimi
   limits.source = LimitSource::estimate;
 }
 
-// Of methods whose eigenvalues here are not those of scalar modes: the modes only guess a step to be proved.
+// Of methods whose eigenvalues here are not those of scalar modes: where the limit is not known, the modes
+// only guess a step to be proved.
 void GeneralDamping::add_proved_at_one_step(const Method& method, MethodLimits& limits) {
-  limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
-  if (!proofs_ || !method.has_magnitude() || s_.size() > LyapunovSteps::unknowns_limit) return;
-  double least = infinity;
-  for (const Stiffening& stiffening : stiffenings())
-    least = std::min(least, certified_.estimated(method, stiffening).value_or(0));
+  if (!proofs_ || !method.has_magnitude()) return;
+  if (s_.size() > LyapunovSteps::unknowns_limit) {
+    limits.unproved =
+        "the method's eigenvalues under this damping are not those of scalar modes, and there are too many "
+        "unknowns for a Lyapunov proof";
+    return;
+  }
+  double least = limits.h_max.value_or(infinity);
+  if (!limits.h_max)
+    for (const Stiffening& stiffening : stiffenings())
+      least = std::min(least, certified_.estimated(method, stiffening).value_or(0));
+  if (!std::isfinite(least)) return;
   if (!lyapunov_) lyapunov_.emplace(s_);
   if (const std::optional<double> h = lyapunov_->certified(method, 0, least)) {
     set_certified(h, Proof::lyapunov, limits);
-    limits.recommended = *h;
+    if (!limits.h_max) limits.recommended = *h;
+  } else {
+    limits.unproved = "no norm was proved to fall at every step, which none does where a motion is undamped";
   }
 }
 

@@ -13,10 +13,11 @@
 
 namespace springstab {
 
-/// The h at which λ_max(x hD' + y h²K') = bound; ∞ where D' = K' = 0; nothing when an eigenvalue did not
-/// converge. y > 0, bound > 0; D', K' are those of `range`, stiffened.
+/// The h at which λ_max(x hD' + y h²K') = bound; ∞ where there is none; nothing when an eigenvalue did not
+/// converge. y > 0, bound > 0; D', K' are those of `range`, stiffened. What D' or K' has below 0 is taken for
+/// rounding, unless D' is `signed_damping`.
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
-                                  const Stiffening& stiffening = {});
+                                  const Stiffening& stiffening = {}, bool signed_damping = false);
 
 /// The largest step found below `h` at which x hD' + y h²K' < bound is proved; nothing where none was.
 std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h);
@@ -49,6 +50,7 @@ class GeneralDamping {
   std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
   void set_certified(std::optional<double> h, Proof proof, MethodLimits& limits);
   void add_exact(const HalfPlane& condition, MethodLimits& limits);
+  void add_split(const Method& method, MethodLimits& limits);
   void add_certified(const Method& method, MethodLimits& limits);
   void add_estimate(const Method& method, MethodLimits& limits);
   void add_estimate_near_boundary(const Method& method, MethodLimits& limits);
@@ -60,6 +62,7 @@ class GeneralDamping {
   double safety_;
   bool proofs_;
   const StructuralMatrices& s_;
+  ArpackOptions options_;
   std::vector<std::optional<std::vector<std::complex<double>>>> spectra_;  // of each stiffening, when needed
   CertifiedSteps certified_;
   std::optional<LyapunovSteps> lyapunov_;  // when needed

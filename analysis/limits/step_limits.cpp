@@ -68,6 +68,11 @@ double designed_alpha(const StabilityRegion& region, double h, double d0) {
   return h * region.damping_line(h * d0).slope;
 }
 
+double designed_alpha(const Method& method, double h, double d0) {
+  if (method.info().implicit_damping == DampingPart::diagonal) return 0;
+  return designed_alpha(stability_region(method), h, d0);
+}
+
 DampingDesign design_damping(const StabilityRegion& region, double k_max, double d0) {
   check({.k_max = k_max, .d0 = d0});
   const double base_limit = d0 > 0 ? region.constants().real_interval / d0 : infinity;

@@ -35,6 +35,8 @@ DampingDesign design_damping(const StabilityRegion& region, double k_max, double
 
 /// The alpha that belongs to a given step: the line that reaches the largest Y from (h d0, 0).
 double designed_alpha(const StabilityRegion& region, double h, double d0);
+/// The same of a method; 0 of one that takes a part of the damping implicitly that is not of modes.
+double designed_alpha(const Method& method, double h, double d0);
 
 /// The limit with a safety factor F on the stiffness: the smallest of the limits for K, for F·K with D fixed,
 /// for F·K with alpha fixed, and of the limit for F·K with √F·D, which is that for K over √F: time runs

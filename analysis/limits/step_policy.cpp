@@ -91,8 +91,7 @@ StepChoice StepChooser::choice(StructureLimits limits) const {
 
 void StepChooser::apply(const StepPlan& plan) {
   decisions_.h = plan.h;
-  if (designed_)
-    model_.set_alpha(designed_alpha(stability_region(options_.method), plan.h, model_.damping().d0));
+  if (designed_) model_.set_alpha(designed_alpha(options_.method, plan.h, model_.damping().d0));
 }
 
 double StepChooser::first_tolerance() const {
@@ -124,7 +123,7 @@ std::optional<StepPlan> StepChooser::first_plan() {
 std::optional<StepPlan> StepChooser::first_plan(const StiffestMode& k0) {
   if (options_.step) return first_plan({options_.step}, k0.value);
   Structure structure{{}, model_.damping()};
-  if (structure.damping.kind == DampingModel::Kind::general)
+  if (structure.damping.kind == DampingModel::Kind::general || options_.method.info().implicit_damping)
     structure = model_.structure(model_.initial_state(options_.seed));
   if (designed_) structure.damping.kind = DampingModel::Kind::designed;
   const StructureLimitsOptions options{.safety = options_.safety, .certify = false, .seed = options_.seed};

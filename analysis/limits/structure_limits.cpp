@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/constants.h"
+#include "analysis/limits/split_damping.h"
 #include "analysis/limits/transient_growth.h"
 
 namespace springstab {
@@ -45,15 +46,42 @@ const MethodLimits& StructureLimits::limits(const Method& method) {
   return known->second;
 }
 
+// Alpha is fitted mode by mode, which a part of the damping is not: with such a method it is 0.
+DampingModel StructureLimits::damping_with(const Method& method) const {
+  const auto& [matrices, damping, every_pose] = *structure_;
+  if (damping.kind != DampingModel::Kind::designed || !takes_part(method, matrices)) return damping;
+  return {DampingModel::Kind::rayleigh, damping.d0, 0};
+}
+
+// Rayleigh's damping commutes with K' and M; what a method takes of it implicitly need not.
+GeneralDamping* StructureLimits::split(const Method& method) {
+  const StructuralMatrices& matrices = structure_->matrices;
+  if (!takes_part(method, matrices) || !k0().converged) return nullptr;
+  const DampingModel damping = damping_with(method);
+  if (!with_damping_) {
+    with_damping_ = matrices;
+    if (!matrices.has_damping())
+      with_damping_->damping = damping.d0 * matrices.mass + damping.alpha * matrices.stiffness;
+  }
+  if (!splits_damping(method, *with_damping_)) return nullptr;
+  if (!split_)
+    split_ = std::make_unique<GeneralDamping>(
+        *with_damping_, k0(), DampingModel{DampingModel::Kind::general, damping.d0, damping.alpha},
+        options_.safety, options_.certify, ArpackOptions{.seed = options_.seed});
+  return split_.get();
+}
+
 MethodLimits StructureLimits::compute(const Method& method) {
-  GeneralDamping* const general = this->general();
+  GeneralDamping* general = this->general();
+  if (!general) general = split(method);
   MethodLimits limits =
-      general ? general->limits(method) : method_limits(method, k0(), structure_->damping, options_.safety);
+      general ? general->limits(method) : method_limits(method, k0(), damping_with(method), options_.safety);
+  if (takes_part(method, structure_->matrices)) limits.designed.reset();
   if (limits.status == LimitStatus::unlimited && options_.max_step)
     limits.recommended = std::min(limits.recommended.value_or(infinity), *options_.max_step);
   if (!options_.certify) return limits;
   if (structure_->every_pose)
-    if (std::optional<HalfPlane> condition = stability_region(method).exact_condition()) {
+    if (std::optional<HalfPlane> condition = matrix_condition(method, structure_->matrices)) {
       condition->x = std::max(condition->x, 0.0);  // damping that helps may be absent in some pose
       limits.every_pose = proved_limit(*structure_->every_pose, *condition, search());
     }
@@ -63,12 +91,11 @@ MethodLimits StructureLimits::compute(const Method& method) {
 
 // With the modes' own damping, or that fitted to the step.
 void StructureLimits::add_transient_growth(const Method& method, MethodLimits& limits) {
-  const DampingModel& damping = structure_->damping;
+  const DampingModel damping = damping_with(method);
   if (!limits.recommended || damping.kind == DampingModel::Kind::general) return;
   const double h = *limits.recommended;
-  const double alpha = damping.kind == DampingModel::Kind::designed
-                           ? designed_alpha(stability_region(method), h, damping.d0)
-                           : damping.alpha;
+  const double alpha =
+      damping.kind == DampingModel::Kind::designed ? designed_alpha(method, h, damping.d0) : damping.alpha;
   limits.transient_growth =
       transient_growth(method, {k0().smallest.value_or(0), k0().value, damping.d0, alpha}, h);
 }

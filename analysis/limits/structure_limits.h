@@ -57,7 +57,9 @@ class StructureLimits {
 
  private:
   ArpackOptions search() const;
-  GeneralDamping* general();  // null where k0 and two numbers decide
+  GeneralDamping* general();                    // null where k0 and two numbers decide
+  GeneralDamping* split(const Method& method);  // null where it takes none or all of D implicitly
+  DampingModel damping_with(const Method& method) const;
   MethodLimits compute(const Method& method);
   void add_transient_growth(const Method& method, MethodLimits& limits);
 
@@ -65,6 +67,8 @@ class StructureLimits {
   StructureLimitsOptions options_;
   std::optional<StiffestMode> k0_;
   std::unique_ptr<GeneralDamping> general_;
+  std::optional<StructuralMatrices> with_damping_;  // where two numbers say it but a method splits it
+  std::unique_ptr<GeneralDamping> split_;
   std::map<Method, MethodLimits, Method::ByIdentity> known_;
 };
 

@@ -67,30 +67,33 @@ LyapunovSteps::LyapunovSteps(const StructuralMatrices& s) {
   damping_ = symmetric_part(basis.transpose() * d * basis);
   stiffness_size_ = size.transpose() * k.cwiseAbs() * size;
   damping_size_ = size.transpose() * d.cwiseAbs() * size;
-  // An entry is a sum over paths of at most 16 sums of n terms; forming and projecting K' adds 2n to each.
+  // An entry is a sum over paths of at most 16 sums of n terms, or of as many as the magnitude allows for (a
+  // solve counts as two); forming and projecting K' adds 2n to each.
   rounding_ = 16 * (3 * static_cast<double>(s.size()) + 16) * unit_roundoff;
 }
 
 bool LyapunovSteps::proves(const Method& method, double h) const {
   const Eigen::Index n = stiffness_.rows();
-  if (method.size() > 2 || !method.has_magnitude()) return false;
+  if (!method.has_magnitude()) return false;
   if (n == 0 || !(stiffness_.diagonal().minCoeff() > 0)) return false;
   // In units of √k and of h the energy of each mode is ‖w‖², and A is not far from normal.
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(2 * n);
+  const Eigen::Index size = method.size() * n;
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(size);
   scale.head(n) = h * stiffness_.diagonal().cwiseSqrt();
   const auto scaled = [&](const Matrix& a) -> Matrix {
     return scale.asDiagonal() * a * scale.cwiseInverse().asDiagonal();
   };
   const Matrix a = scaled(transition_matrix(h * h * stiffness_, h * damping_, method));
-  const std::optional<Matrix> size = method.magnitude(h * h * stiffness_size_, h * damping_size_);
-  if (!size) return false;
-  const Matrix b = rounding_ * scaled(*size);  // bounds the rounding of a, entry by entry
+  const std::optional<Matrix> magnitude =
+      method.magnitude({h * h * stiffness_, h * damping_, h * h * stiffness_size_, h * damping_size_});
+  if (!magnitude) return false;
+  const Matrix b = rounding_ * scaled(*magnitude);  // bounds the rounding of a, entry by entry
   const Matrix p = lyapunov_matrix(a);
-  if (!is_definite(p, Eigen::VectorXd::Zero(2 * n))) return false;
+  if (!is_definite(p, Eigen::VectorXd::Zero(size))) return false;
 
   const Matrix a_size = a.cwiseAbs(), p_size = p.cwiseAbs();
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(2 * n), a_sum = a_size * ones, b_sum = b * ones;
-  const double product = (8 * static_cast<double>(n) + 4) * unit_roundoff;
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(size), a_sum = a_size * ones, b_sum = b * ones;
+  const double product = (4 * static_cast<double>(size) + 4) * unit_roundoff;
   const Eigen::VectorXd error = 1.01 * (a_size.transpose() * (p_size * (b_sum + product * a_sum)) +
                                         product * p_size * ones + b.transpose() * (p_size * (a_sum + b_sum)));
   return is_definite(symmetric_part(p - a.transpose() * p * a), error);

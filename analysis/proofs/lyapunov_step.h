@@ -21,8 +21,8 @@ class LyapunovSteps {
   explicit LyapunovSteps(const StructuralMatrices& s);
 
   /// Whether a step of h is proved to be stable, in spite of the rounding of A, of P - AᵀPA and of the
-  /// Cholesky factorizations. It takes K positive definite but for rigid motions, and a method that
-  /// carries only x and v and has a magnitude.
+  /// Cholesky factorizations. It takes K positive definite but for rigid motions, and a method that has a
+  /// magnitude.
   bool proves(const Method& method, double h) const;
 
   /// The first step proved of those that fall from `h_max`, the true limit, by growing gaps to `least`;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "solvers/methods/method_info.h"
 #include "solvers/state.h"
+#include "solvers/system.h"
 
 namespace springstab {
 
@@ -22,12 +24,38 @@ struct Magnitude {
   friend Magnitude operator*(double factor, const Magnitude& a) { return {std::abs(factor) * a.entries}; }
 };
 
+/// K and D of a step, and bounds on what each of their entries sums up.
+struct SizedMatrices {
+  Eigen::MatrixXd stiffness, damping, stiffness_size, damping_size;
+};
+
+struct MagnitudeSystem;
+template <>
+struct LinearizationTrait<Magnitude> {
+  using type = const MagnitudeSystem*;
+};
+
 struct MagnitudeSystem {
-  Eigen::MatrixXd stiffness, damping;
+  const SizedMatrices& of;
+  mutable long sums = 0;  // over n terms, of everything that was asked for so far
 
   void acceleration(const Magnitude& x, const Magnitude& v, Magnitude& a) const {
-    a.entries = stiffness * x.entries + damping * v.entries;
+    sums += 1;
+    a.entries = of.stiffness_size * x.entries + of.damping_size * v.entries;
   }
+  void stiffness_times(const Magnitude& u, Magnitude& out) const {
+    sums += 1;
+    out.entries = of.stiffness_size * u.entries;
+  }
+  void damping_times(const Magnitude& u, Magnitude& out) const {
+    sums += 1;
+    out.entries = of.damping_size * u.entries;
+  }
+  SolveReport solve_shifted(const Shift& shift, const Magnitude& rhs, Magnitude& out) const;
+  SolveReport solve_damping(DampingPart, double h, const Magnitude& rhs, Magnitude& out) const {
+    return solve_shifted({1, h, 0}, rhs, out);
+  }
+  void linearize(const Magnitude&, const Magnitude&, const MagnitudeSystem*& linear) const { linear = this; }
 };
 
 /// Whether the method's step asks for nothing that MagnitudeSystem has not.
@@ -38,12 +66,10 @@ inline constexpr bool has_step_magnitude = requires(StepsOf<Description, Magnitu
 };
 
 template <class Description>
-std::optional<Eigen::MatrixXd> step_magnitude(const Description& description,
-                                              const Eigen::MatrixXd& stiffness,
-                                              const Eigen::MatrixXd& damping) {
+std::optional<Eigen::MatrixXd> step_magnitude(const Description& description, const SizedMatrices& matrices) {
   if constexpr (has_step_magnitude<Description>) {
-    MagnitudeSystem system{stiffness.cwiseAbs(), damping.cwiseAbs()};
-    const Eigen::Index n = stiffness.rows(), m = 2 + description.info().memory;
+    MagnitudeSystem system{matrices};
+    const Eigen::Index n = matrices.stiffness.rows(), m = 2 + description.info().memory;
     const auto unit = [&](Eigen::Index i) {
       Magnitude u{Eigen::MatrixXd::Zero(n, m * n)};
       u.entries.middleCols(i * n, n).setIdentity();
@@ -58,7 +84,8 @@ std::optional<Eigen::MatrixXd> step_magnitude(const Description& description,
     result.middleRows(n, n) = state.v.entries;
     for (Eigen::Index i = 2; i < m; ++i)
       result.middleRows(i * n, n) = state.memory[static_cast<std::size_t>(i - 2)].entries;
-    return result;
+    constexpr long few = 16;  // sums on the way to an entry
+    return std::max(1.0, static_cast<double>(system.sums) / few) * result;
   } else {
     return std::nullopt;
   }

@@ -99,6 +99,9 @@ class StabilityRegion {
 
   const RegionConstants& constants() const { return constants_; }
 
+  /// Whether undamped motion grows at every step: the imaginary interval is empty.
+  bool amplifies() const { return constants_.imaginary_interval == 0; }
+
   /// Whether the two methods have the same conditions, as a linearized one and the one inside.
   bool same_conditions(const StabilityRegion& other) const;
 

@@ -3,8 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "analysis/constants.h"
+#include "analysis/regions/stability_region.h"
 #include "analysis/spectra/generator_spectrum.h"
 #include "analysis/spectra/spectrum.h"
 #include "analysis/spectra/transition_operator.h"
@@ -26,7 +28,19 @@ class Transition {
   Transition(const Method& method, const Generator& g, bool symmetric, long growing)
       : method_(method), system_(matrices(g, symmetric)), allowed_(growing) {}
 
-  Eigen::MatrixXd at(double h) { return as_dense(transition_operator(system_, method_, h)); }
+  // All ∞ where the step cannot be solved for.
+  Eigen::MatrixXd at(double h) {
+    try {
+      return as_dense(transition_operator(system_, method_, h));
+    } catch (const std::runtime_error&) {
+      const Eigen::Index size = method_.size() * system_.size();
+      return Eigen::MatrixXd::Constant(size, size, infinity);
+    }
+  }
+
+  double radius(double h) {
+    return Eigen::EigenSolver<Eigen::MatrixXd>(at(h), false).eigenvalues().cwiseAbs().maxCoeff();
+  }
 
   // Whether more are outside, beyond rounding, than grow by themselves. One of these that came inside is not
   // expected back.
@@ -104,9 +118,18 @@ double narrowed(Transition& transition, double holds, double fails) {
 
 }  // namespace
 
+double undamped_limit(const Method& method, const std::vector<std::complex<double>>& modes) {
+  double h = infinity;
+  for (const std::complex<double> mu : modes)
+    if (mu.real() == 0 && mu.imag() > 0)
+      h = std::min(h, stability_region(method).critical_step(std::norm(mu), 0));
+  return h;
+}
+
 std::optional<double> transition_limit(const Method& method, const StructuralMatrices& s,
                                        const std::vector<std::complex<double>>& modes) {
-  if (method.info().implicit || method.size() > 2) return std::nullopt;
+  if (method.info().implicit && !s.symmetric) return std::nullopt;
+  if (method.size() > 2 && method.size() * s.size() > transition_limit_rows) return std::nullopt;
   const std::optional<Generator> g = dimensionless_generator(s);
   if (!g) return std::nullopt;
   double fastest = 0;
@@ -123,7 +146,8 @@ std::optional<double> transition_limit(const Method& method, const StructuralMat
     for (double step = first_step / 10; step >= smallest_step * (1 - unit_roundoff); step /= 10)
       if (!fails(step)) return limit(step, 10 * step);
     const bool undamped = std::any_of(modes.begin(), modes.end(), [](auto mu) { return mu.real() == 0; });
-    return undamped ? std::optional(0.0) : std::nullopt;
+    // What is far outside then is none of the motions, which are near 1.
+    return undamped || transition.radius(smallest_step / fastest) > 1.01 ? std::optional(0.0) : std::nullopt;
   }
   double holds = first_step;
   for (double step = second_step; step < largest_step;

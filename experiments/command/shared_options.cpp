@@ -6,6 +6,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "analysis/regions/stability_region.h"
 #include "experiments/runs/fnv1a.h"
 #include "experiments/runs/identity.h"
 
@@ -70,6 +71,10 @@ Json method_settings(const CommonOptions& common, const std::string& names) {
   return settings;
 }
 
+bool amplifies_without_need(const Method& method) {
+  return method.info().implicit && stability_region(method).amplifies();
+}
+
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
   std::vector<Option> all{
       Option("INPUT", &input.file, "SCENE.json, a surface .obj, tetrahedra .veg, or either .msh, .vtk")
@@ -90,6 +95,9 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
           .shown_as("FILE"),
       Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),
       Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE"),
+      Option("--implicit-damping-matrix", &input.implicit_damping_matrix,
+             "more of D: what implicit-damping-euler takes implicitly (default: all of D)")
+          .shown_as("FILE"),
       Option("--rayleigh", &input.rayleigh, "of matrices: adds d0 M + alpha K to D").shown_as("d0,alpha"),
       Option("--sum-duplicates", &input.sum_duplicates,
              "add up entries of a matrix file that have one position")};

@@ -14,6 +14,11 @@ namespace springstab {
 /// Every method's name, with commas.
 std::string method_names();
 
+/// Said where a user chooses a method.
+inline constexpr char leapfrog_words[] =
+    "Leapfrog with the damping of the half step before, and velocity Verlet\n"
+    "with one force a step, take the steps of symplectic-euler: Y < 4 - 2X.";
+
 /// --methods: "all", or names with commas; empty for those shown where none is named.
 Option methods_option(std::string& names);
 /// What --methods says, and the method of --method-file. Throws std::invalid_argument for an unknown one.
@@ -23,6 +28,10 @@ std::vector<Method> methods_of(const std::string& names);
 std::string method_asked_for(const std::string& name, const std::string& option);
 /// For the identity of a run: --methods and the contents of --method-file, where they are given.
 Json method_settings(const CommonOptions& common, const std::string& names = "");
+
+/// Whether undamped motion grows at every step of an implicit method, which is what its parameters do: of
+/// explicit methods it is expected.
+bool amplifies_without_need(const Method& method);
 
 /// INPUT and what belongs to it, then `more`.
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);

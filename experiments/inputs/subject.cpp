@@ -156,9 +156,10 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
                          ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
   if (options.stiffness.empty()) {
     if (!options.mass.empty() || !options.damping_matrix.empty() || !options.rayleigh.empty() ||
-        options.sum_duplicates)
+        !options.implicit_damping_matrix.empty() || options.sum_duplicates)
       throw InputError("input", 0,
-                       "--mass, --damping-matrix, --rayleigh and --sum-duplicates go with --stiffness");
+                       "--mass, --damping-matrix, --implicit-damping-matrix, --rayleigh and "
+                       "--sum-duplicates go with --stiffness");
     build_scene(describe(options));
   } else {
     build_matrices(options, any_matrices);
@@ -174,14 +175,15 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   const auto read = [&](const std::string& path) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
   };
-  const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix);
+  const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix),
+                     implicit = read(options.implicit_damping_matrix);
   const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
   std::string files = options.stiffness;
-  for (const std::string* file : {&options.mass, &options.damping_matrix})
+  for (const std::string* file : {&options.mass, &options.damping_matrix, &options.implicit_damping_matrix})
     if (!file->empty()) files += ", " + *file;
   Model::operator=(naming(files, [&] {
     const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
-    return Model(std::make_unique<MatrixSystem>(make(k, m, d, rayleigh)));
+    return Model(std::make_unique<MatrixSystem>(make(k, m, d, rayleigh, implicit)));
   }));
 }
 

@@ -20,7 +20,7 @@ struct InputOptions {
   std::string material, pin;      // with grid or a mesh
   std::optional<double> scale;    // of a scene's geometry
   std::string diagonals;          // with grid
-  std::string stiffness, mass, damping_matrix;
+  std::string stiffness, mass, damping_matrix, implicit_damping_matrix;
   bool sum_duplicates = false;  // of these matrices' entries
   std::string rayleigh;         // "d0,alpha": damping of matrices beside D
 };

@@ -52,6 +52,8 @@ Json contents_of(const InputOptions& input, bool resume) {
                                                               {"mass", input.mass},
                                                               {"damping-matrix", input.damping_matrix}};
   for (const auto& [name, file] : files) contents[name] = file.empty() ? Json() : contents_of(file, resume);
+  if (!input.implicit_damping_matrix.empty())
+    contents["implicit-damping-matrix"] = contents_of(input.implicit_damping_matrix, resume);
   if (!input.diagonals.empty()) contents["diagonals"] = input.diagonals;
   if (input.scale) contents["scale"] = number(input.scale);
   if (!input.rayleigh.empty()) contents["rayleigh"] = input.rayleigh;

@@ -139,6 +139,22 @@ SolveReport BlockLinearSystem::solve_coupled(const StageCoupling& coupling, cons
   return stages.solve(s.mass, rhs, out);
 }
 
+SolveReport BlockLinearSystem::solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) {
+  if (part == DampingPart::all) return solve_shifted({1, h, 0}, rhs, out);
+  out.resize(size());
+  for (int i = 0; i < stiffness_.rows(); ++i) {
+    const Eigen::Map<const Block3> k(stiffness_.block(stiffness_.diagonal(i)));
+    Eigen::Vector3d d = Eigen::Vector3d::Constant(mass_[i] * damping_.d0) + damping_.alpha * k.diagonal();
+    if (own_damping_)
+      d += Eigen::Map<const Block3>(own_damping_->block(own_damping_->diagonal(i))).diagonal();
+    const Eigen::Vector3d sum = (h * d).array() + mass_[i];
+    if (!(sum.minCoeff() > 0)) return {.status = StepStatus::not_positive_definite};
+    const long first = 3 * static_cast<long>(i);
+    out.segment<3>(first) = mass_[i] * rhs.segment<3>(first).cwiseQuotient(sum);
+  }
+  return {};
+}
+
 double BlockLinearSystem::kinetic_energy(const Vector& v) {
   double sum = 0;
   for (std::size_t i = 0; i < mass_.size(); ++i) sum += mass_[i] * v.segment<3>(3 * i).squaredNorm();

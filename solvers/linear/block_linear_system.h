@@ -41,6 +41,7 @@ class BlockLinearSystem final : public LinearSystem {
   /// By LU factors, made anew at each solve, whatever `solver` says.
   SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
                             std::vector<Vector>& out) override;
+  SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 

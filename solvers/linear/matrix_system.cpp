@@ -10,7 +10,8 @@ namespace springstab {
 
 struct MatrixSystem::Factors {
   Eigen::SimplicialLLT<SparseMatrix> mass, shifted;
-  std::optional<Shift> shift;  // of `shifted`
+  std::optional<Shift> shift;                             // of `shifted`, or
+  std::optional<std::pair<DampingPart, double>> damping;  // M + hD_i of that part and h
   CoupledStages coupled;
 };
 
@@ -40,14 +41,29 @@ void MatrixSystem::damping_times(const Vector& u, Vector& out) {
 }
 
 SolveReport MatrixSystem::solve_shifted(const Shift& shift, const Vector& rhs, Vector& out) {
-  if (!matrices_.symmetric)
-    throw std::invalid_argument("K or D is not symmetric, expected symmetric ones for an implicit step");
   if (factors_->shift != shift) {
     SparseMatrix shifted = shift.mass * matrices_.mass + shift.stiffness * matrices_.stiffness;
     if (matrices_.has_damping()) shifted += shift.damping * matrices_.damping;
     factors_->shifted.compute(shifted);
     factors_->shift = shift;
+    factors_->damping.reset();
   }
+  return solve_factored(rhs, out);
+}
+
+SolveReport MatrixSystem::solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) {
+  if (part == DampingPart::all && !matrices_.says_implicit()) return solve_shifted({1, h, 0}, rhs, out);
+  if (const std::pair wanted(part, h); factors_->damping != wanted) {
+    factors_->shifted.compute(matrices_.mass + h * implicit_damping(matrices_, part));
+    factors_->damping = wanted;
+    factors_->shift.reset();
+  }
+  return solve_factored(rhs, out);
+}
+
+SolveReport MatrixSystem::solve_factored(const Vector& rhs, Vector& out) {
+  if (!matrices_.symmetric)
+    throw std::invalid_argument("K or D is not symmetric, expected symmetric ones for an implicit step");
   if (factors_->shifted.info() != Eigen::Success) return {.status = StepStatus::not_positive_definite};
   force_.noalias() = matrices_.mass * rhs;
   out = factors_->shifted.solve(force_);

@@ -30,11 +30,14 @@ class MatrixSystem final : public LinearSystem {
   /// Takes K and D that are not symmetric, too.
   SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
                             std::vector<Vector>& out) override;
+  SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 
  private:
   struct Factors;
+
+  SolveReport solve_factored(const Vector& rhs, Vector& out);
 
   StructuralMatrices matrices_;
   std::unique_ptr<Factors> factors_;

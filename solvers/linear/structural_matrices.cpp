@@ -120,6 +120,10 @@ void condense(StructuralMatrices& s) {
   const Eigen::VectorXd row_size = s.mass.cwiseAbs() * Eigen::VectorXd::Ones(n);
   for (Eigen::Index i = 0; i < n; ++i) (row_size[i] > 0 ? heavy[i] = a++ : massless[i] = b++);
   if (b == 0) return;
+  if (s.says_implicit())
+    throw std::invalid_argument(std::to_string(b) +
+                                " unknowns have no mass, expected mass for all beside an implicit damping "
+                                "matrix");
   if (a == 0) throw std::invalid_argument("the mass matrix is zero, expected some mass");
   if (a > largest_condensed)
     throw std::invalid_argument("eliminating " + std::to_string(b) +
@@ -144,7 +148,8 @@ void condense(StructuralMatrices& s) {
 
 // Of K and D only symmetric ones are accepted, unless they may be `any`.
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                           const SparseMatrix& damping, const RayleighDamping& more, bool any) {
+                           const SparseMatrix& damping, const RayleighDamping& more,
+                           const SparseMatrix& implicit, bool any) {
   const Eigen::Index n = stiffness.rows();
   if (n == 0) throw std::invalid_argument("the stiffness matrix is empty, expected at least one unknown");
   StructuralMatrices s;
@@ -159,6 +164,10 @@ StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& ma
   if (more.d0 != 0 || more.alpha != 0) {
     const SparseMatrix added = more.d0 * s.mass + more.alpha * s.stiffness;
     s.damping = s.damping.size() > 0 ? SparseMatrix(s.damping + added) : added;
+  }
+  if (implicit.size() > 0) {
+    s.implicit_damping = checked(implicit, "implicit damping", n, any ? &s.symmetric : nullptr);
+    s.damping = s.damping.size() > 0 ? SparseMatrix(s.damping + s.implicit_damping) : s.implicit_damping;
   }
   for (Eigen::Index i = 0; i < n; ++i)
     if (s.mass.coeff(i, i) < 0) {
@@ -193,14 +202,23 @@ bool is_diagonal(const SparseMatrix& a) {
   return true;
 }
 
+SparseMatrix implicit_damping(const StructuralMatrices& s, DampingPart part) {
+  const SparseMatrix& offered = s.says_implicit() ? s.implicit_damping : s.damping;
+  if (offered.size() == 0) return {s.size(), s.size()};
+  if (part == DampingPart::all) return offered;
+  return SparseMatrix(Eigen::VectorXd(offered.diagonal()).asDiagonal());
+}
+
 StructuralMatrices prepare(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                           const SparseMatrix& damping, const RayleighDamping& more) {
-  return prepare(stiffness, mass, damping, more, false);
+                           const SparseMatrix& damping, const RayleighDamping& more,
+                           const SparseMatrix& implicit_damping) {
+  return prepare(stiffness, mass, damping, more, implicit_damping, false);
 }
 
 StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const SparseMatrix& mass,
-                                        const SparseMatrix& damping, const RayleighDamping& more) {
-  return prepare(stiffness, mass, damping, more, true);
+                                        const SparseMatrix& damping, const RayleighDamping& more,
+                                        const SparseMatrix& implicit_damping) {
+  return prepare(stiffness, mass, damping, more, implicit_damping, true);
 }
 
 }  // namespace springstab

@@ -4,13 +4,16 @@
 // explicit where a_ii = 0. With g = h a_ii each other stage is one Newton step from V_i = V_{i-1} (v where
 // the stage before is the beginning), for Δ = V_i - V_{i-1}:
 //     (1 + gD' + g²K') Δ = v + h Σ_{j<i} a_ij f_j + g a(X, V_{i-1}) - V_{i-1},   X_i = X + gΔ,
-// with D' and K' of the first such stage, so that a step needs one linearization and its matrix stays.
+// with D' and K' of the first such stage, so that a step needs one linearization and its matrix stays. Where
+// more Newton steps are asked for, each has those of its own iterate.
 #pragma once
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "solvers/methods/method_info.h"
+#include "solvers/methods/newton.h"
 #include "solvers/system.h"
 
 namespace springstab {
@@ -24,6 +27,8 @@ struct DiagonallyImplicitTableau {
 template <class V, auto tableau>
 class DiagonallyImplicit {
  public:
+  bool set_newton(const NewtonOptions& options) { return newton_.set(options); }
+
   template <Linearizable<V> System>
   StepStatus step(System& system, double h, State<V>& state) {
     bool linearized = false;
@@ -49,16 +54,32 @@ class DiagonallyImplicit {
       const SolveReport solved = linear_->solve_shifted({1, g, g * g}, right_, change_);
       if (solved.status != StepStatus::done) return solved.status;
       x_ = x_ + g * change_;
-      f_[i] = (1 / g) * (from + change_ - v_[i]);
-      v_[i] = from + change_;
+      u_ = from + change_;
+      const StepStatus status = newton_.improve(
+          [&](V& right) {
+            system.acceleration(x_, u_, f_[i]);
+            system.linearize(x_, u_, linear_);
+            right = v_[i] + g * f_[i] - u_;
+          },
+          [&](const V& right, V& change) {
+            return linear_->solve_shifted({1, g, g * g}, right, change);
+          },
+          [&](const V& change) -> const V& {
+            x_ = x_ + g * change;
+            return u_ = u_ + change;
+          });
+      if (status != StepStatus::done) return status;
+      f_[i] = (1 / g) * (u_ - v_[i]);
+      std::swap(v_[i], u_);
     }
     return commit(state, x_, v_.back());
   }
 
  private:
   Linearization<V> linear_ = {};
+  NewtonIteration<V> newton_;
   std::array<V, tableau.stages> v_, f_;
-  V x_, right_, change_;
+  V x_, right_, change_, u_;
 };
 
 }  // namespace springstab

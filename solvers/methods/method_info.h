@@ -23,11 +23,15 @@
 // method carries from step to step lies in state.memory. Optional members of Steps:
 //     Steps(const MyEuler&)                        takes over the description's parameters,
 //     start(system, h, state)                      fills state.memory before the first step,
-//     change_step(system, h_old, h_new, state)     turns what was carried for h_old into that for h_new.
+//     set_newton(options)                          of implicit steps (newton.h); whether they have a use for
+//     it, change_step(system, h_old, h_new, state)     turns what was carried for h_old into that for h_new.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <type_traits>
+
+#include "solvers/system.h"
 
 namespace springstab {
 
@@ -47,6 +51,7 @@ struct MethodInfo {
   int memory = 0;           // vectors carried beyond x and v
   StepChange when_h_changes = StepChange::nothing;
   bool regions_by_values = false;  // so many stages that a formula in powers of X and Y has lost its digits
+  std::optional<DampingPart> implicit_damping{};  // all that it takes implicitly, if that is damping
 };
 
 template <class Description, class V>

@@ -28,7 +28,7 @@ void Problem::design_damping() {
 }
 
 void Problem::set_damping_for(std::string_view method, double h) {
-  if (designed_) model_.set_alpha(designed_alpha(stability_region(method), h, damping_.d0));
+  if (designed_) model_.set_alpha(designed_alpha(method, h, damping_.d0));
 }
 
 void Problem::set_own_damping() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "solvers/methods/method_info.h"
 #include "solvers/state.h"
@@ -54,6 +55,11 @@ struct MagnitudeSystem {
   SolveReport solve_shifted(const Shift& shift, const Magnitude& rhs, Magnitude& out) const;
   SolveReport solve_damping(DampingPart, double h, const Magnitude& rhs, Magnitude& out) const {
     return solve_shifted({1, h, 0}, rhs, out);
+  }
+  /// Nothing bounds the rounding of stages that are solved for together.
+  SolveReport solve_coupled(const StageCoupling&, const std::vector<Magnitude>&,
+                            std::vector<Magnitude>&) const {
+    return {.status = StepStatus::not_converged};
   }
   void linearize(const Magnitude&, const Magnitude&, const MagnitudeSystem*& linear) const { linear = this; }
 };

@@ -1,6 +1,6 @@
 # Installs BUILD (configuration CONFIG) into a folder of its own beside SCRATCH, then builds and runs the
 # consumers against it. Where all goes well nothing is left.
-# CMAKE_CXX_FLAGS is given empty: whatever the environment says, the consumer has no -march.
+# CMAKE_CXX_FLAGS is given empty: whatever the environment says, the consumer has the flags of the library.
 set(source ${CMAKE_CURRENT_LIST_DIR})
 string(RANDOM LENGTH 12 own)
 string(APPEND SCRATCH -${own})

@@ -157,7 +157,7 @@ void GeneralDamping::set_certified(std::optional<double> h, Proof proof, MethodL
     limits.proof = proof;
     limits.unproved = {};
   } else {
-    limits.unproved = s_.size() > DefinitenessProof::factorization_limit
+    limits.unproved = s_.size() > SparseCholesky::unknowns_limit
                           ? "there are too many unknowns to factorize a matrix"
                           : "no convex part of the region was proved to hold the damping and stiffness";
   }

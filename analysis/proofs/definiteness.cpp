@@ -1,6 +1,5 @@
 #include "analysis/proofs/definiteness.h"
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
 
 #include "analysis/constants.h"
@@ -10,23 +9,35 @@ namespace {
 
 Eigen::VectorXd row_sums(const SparseMatrix& a) { return a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()); }
 
+// A bound e: the factorization is that of A + ΔA with -e diag(A) <= ΔA <= e diag(A).
+//
+// Row i of L has l_i entries, the last on the diagonal. Each l_ij (or l_ii²) comes from a_ij - Σ_k l_ik l_jk,
+// at most l_i - 1 products. In whatever order they are summed, by single numbers or by blocks, into parts of
+// their own or at once, with fused operations or without, a product is rounded once and passes through no
+// more than l_i - 1 sums; what is divided by l_jj is rounded once, or twice where a BLAS multiplies by the
+// reciprocal, as OpenBLAS does. (Products with the zeros that pad a block are exact zeros and round nothing.)
+// So, with u the unit roundoff and γ_k = k u/(1 - k u),
+//     |ΔA_ij| <= γ(min(l_i, l_j) + 2) Σ_k |l_ik| |l_jk| <= √φ_i √a_ii √φ_j √a_jj,  φ_i = γ(l_i+2)/(1 -
+//     γ(l_i+2)),
+// by Cauchy and Schwarz, as Σ_k l_ik² <= a_ii/(1 - γ): in the scale where A has a unit diagonal, ΔA is at
+// most Σ φ_i, the norm of a matrix of rank one. (Rump 2006, Verification of positive definiteness, BIT 46;
+// Higham 2002, Accuracy and Stability, §3.1 and §10.1. It holds for any BLAS that multiplies and adds as the
+// definition says, not for Strassen's products or triangular inverses by blocks.)
+double factorization_error(const SparseCholesky& cholesky, Eigen::Index size) {
+  return 1.01 * unit_roundoff * (cholesky.entries() + 2 * static_cast<double>(size));
+}
+
+// A, plus 1e-9 of its diagonal and 1e-13 of its largest entry.
+SparseMatrix lifted(SparseMatrix a) {
+  const double largest = a.coeffs().abs().maxCoeff();
+  a.diagonal() +=
+      (1e-9 * a.diagonal().cwiseAbs() + Eigen::VectorXd::Constant(a.rows(), 1e-13 * largest)).eval();
+  return a;
+}
+
 }  // namespace
 
-struct DefinitenessProof::Factor {
-  Eigen::SimplicialLLT<SparseMatrix> cholesky;
-  bool analyzed = false;
-  double last_error = 0;
-
-  // A bound e: the factorization is that of A + ΔA with -e diag(A) <= ΔA <= e diag(A), for it is so in the
-  // scale where A has a unit diagonal: Σ γ(l_i + 2), where l_i counts row i of the factor (Rump 2006,
-  // Verification of positive definiteness, BIT 46).
-  double error() const {
-    const SparseMatrix& l = cholesky.matrixL().nestedExpression();
-    return 1.01 * unit_roundoff * static_cast<double>(l.nonZeros() + 2 * l.rows());
-  }
-};
-
-DefinitenessProof::DefinitenessProof(const StructuralMatrices& s) : factor_(std::make_unique<Factor>()) {
+DefinitenessProof::DefinitenessProof(const StructuralMatrices& s) {
   const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
   mass_ = scaled(s.mass, d);
   stiffness_ = scaled(s.stiffness, d);
@@ -36,12 +47,17 @@ DefinitenessProof::DefinitenessProof(const StructuralMatrices& s) : factor_(std:
   damping_size_ = s.has_damping() ? row_sums(damping_) : Eigen::VectorXd::Zero(s.size());
 }
 
-DefinitenessProof::~DefinitenessProof() = default;
-DefinitenessProof::DefinitenessProof(DefinitenessProof&&) noexcept = default;
-
-bool DefinitenessProof::holds(double c, double a, double b) {
+// c M - a D - b K, with an entry for each of theirs.
+SparseMatrix DefinitenessProof::sum(double c, double a, double b) const {
   SparseMatrix matrix = c * mass_ - b * stiffness_;
   if (damping_.size() > 0) matrix = SparseMatrix(matrix - a * damping_);
+  return matrix;
+}
+
+bool DefinitenessProof::factorizes() { return cholesky_.analyze(sum(1, 1, 1)); }
+
+bool DefinitenessProof::holds(double c, double a, double b) {
+  SparseMatrix matrix = sum(c, a, b);
   const Eigen::VectorXd forming_error =
       8 * unit_roundoff *
       (std::abs(c) * mass_size_ + std::abs(a) * damping_size_ + std::abs(b) * stiffness_size_);
@@ -52,34 +68,17 @@ bool DefinitenessProof::holds(double c, double a, double b) {
   const double summing_error = 2 * unit_roundoff * static_cast<double>(matrix.rows());
   if ((2 * diagonal - row_sums(matrix) - 2 * forming_error - summing_error * diagonal).minCoeff() > 0)
     return true;
-  if (matrix.rows() > factorization_limit) return false;
+  if (!cholesky_.analyze(matrix)) return false;
+  matrix.diagonal() -= forming_error + factorization_error(cholesky_, matrix.rows()) * diagonal;
+  return cholesky_.factorize(matrix);
+}
 
-  if (!factor_->analyzed) factor_->cholesky.analyzePattern(matrix);
-  factor_->analyzed = true;
-  double error = factor_->last_error;
-  for (int attempt = 0; attempt < 3; ++attempt) {  // the shift depends on the factor, a little
-    SparseMatrix shifted = matrix;
-    shifted.diagonal() -= forming_error + error * diagonal;
-    factor_->cholesky.factorize(shifted);
-    if (factor_->cholesky.info() != Eigen::Success) return false;
-    const double needed = factor_->error();
-    factor_->last_error = 1.1 * needed;
-    if (error >= needed) return true;
-    error = 1.1 * needed;
-  }
-  return false;
+bool DefinitenessProof::stiffness_is_semidefinite() {
+  return stiffness_.nonZeros() == 0 || cholesky_.factorize(lifted(sum(0, 0, -1)));
 }
 
 bool is_semidefinite(const SparseMatrix& a, const SparseMatrix& mass) {
-  const Eigen::VectorXd d = mass.diagonal().cwiseSqrt().cwiseInverse();
-  SparseMatrix shifted = scaled(a, d);
-  if (shifted.nonZeros() == 0) return true;
-  const double largest = shifted.coeffs().abs().maxCoeff();
-  const Eigen::VectorXd diagonal = shifted.diagonal();
-  SparseMatrix shift(a.rows(), a.cols());
-  shift.setIdentity();
-  shift.diagonal() = 1e-9 * diagonal.cwiseAbs() + Eigen::VectorXd::Constant(a.rows(), 1e-13 * largest);
-  return Eigen::SimplicialLLT<SparseMatrix>(shifted + shift).info() == Eigen::Success;
+  return DefinitenessProof({a, mass, {}}).stiffness_is_semidefinite();
 }
 
 }  // namespace springstab

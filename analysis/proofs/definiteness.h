@@ -1,8 +1,7 @@
 // Proofs by Cholesky factorization that a matrix is positive definite in spite of rounding.
 #pragma once
 
-#include <memory>
-
+#include "analysis/proofs/sparse_cholesky.h"
 #include "solvers/linear/structural_matrices.h"
 
 namespace springstab {
@@ -10,23 +9,25 @@ namespace springstab {
 /// Proofs for one structure, with one symbolic factorization for all its proofs.
 class DefinitenessProof {
  public:
-  /// Copies what it needs, scaled so that the mass has a unit diagonal. Where there are more than
-  /// `factorization_limit` unknowns nothing is factorized, and only diagonally dominant matrices are proved.
+  /// Copies what it needs, scaled so that the mass has a unit diagonal. Where SparseCholesky finds too many
+  /// unknowns nothing is factorized, and only diagonally dominant matrices are proved.
   explicit DefinitenessProof(const StructuralMatrices& s);
-  ~DefinitenessProof();
-  DefinitenessProof(DefinitenessProof&&) noexcept;
-
-  static constexpr Eigen::Index factorization_limit = 150'000;
 
   /// Whether c M - a D - b K is proved to be positive definite. No proof is no proof of the contrary.
   bool holds(double c, double a, double b);
 
+  /// Whether matrices of this pattern are factorized at all. Analyzes it.
+  bool factorizes();
+
+  /// Whether K has no eigenvalue below zero but for rounding: see is_semidefinite.
+  bool stiffness_is_semidefinite();
+
  private:
-  struct Factor;
+  SparseMatrix sum(double c, double a, double b) const;
 
   SparseMatrix mass_, damping_, stiffness_;
   Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
-  std::unique_ptr<Factor> factor_;
+  SparseCholesky cholesky_;
 };
 
 /// Whether a symmetric matrix has no eigenvalue below zero but for rounding: of 1e-9 of the diagonal, unknown

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/constants.h"
 #include "analysis/spectra/chebyshev_filter.h"
+#include "analysis/spectra/lanczos.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/linear/dense_solvers.h"
 
@@ -63,7 +65,10 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
     const Eigen::VectorXd random = start_vector(size_, {}, options_.seed);
     options.start = near + 1e-2 / random.norm() * random;
   }
-  const SymmetricEigenpairs pairs = largest_eigenpair(sum, options);
+  SymmetricEigenpairs pairs;
+  if (size_ >= many_unknowns && options.tolerance >= lanczos_tolerance)
+    pairs = largest_by_lanczos(sum, options, true);
+  if (!pairs.converged) pairs = largest_eigenpair(sum, options);
   if (!pairs.converged) return std::nullopt;
   return point(pairs.vectors.col(0));
 }

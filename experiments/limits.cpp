@@ -61,13 +61,23 @@ Json damping_json(const DampingModel& damping) {
   return json;
 }
 
-const char* name(BoundKind kind) { return kind == BoundKind::inertia ? "inertia" : "gershgorin"; }
+const char* name(BoundKind kind) {
+  switch (kind) {
+    case BoundKind::inertia:
+      return "inertia";
+    case BoundKind::pieces:
+      return "pieces";
+    case BoundKind::gershgorin:
+      break;
+  }
+  return "gershgorin";
+}
 
 // Where every eigenvalue was computed, k0 is one; else it is a Ritz value, from below.
 const char* value_kind(const StiffestMode& k0) { return k0.smallest ? "eigenvalue" : "Ritz value"; }
 
-std::optional<double> inertia_bound(const StiffestMode& k0) {
-  return k0.bound_kind == BoundKind::inertia ? std::optional(k0.upper_bound) : std::nullopt;
+std::optional<double> factorized_bound(const StiffestMode& k0, BoundKind kind) {
+  return k0.bound_kind == kind ? std::optional(k0.upper_bound) : std::nullopt;
 }
 
 std::optional<double> gershgorin_bound(const StiffestMode& k0) {
@@ -76,23 +86,26 @@ std::optional<double> gershgorin_bound(const StiffestMode& k0) {
 
 std::string bounds(const StiffestMode& k0) {
   std::string list;
-  if (const auto bound = inertia_bound(k0)) list = text("below %.10g by inertia, ", *bound);
+  for (const BoundKind kind : {BoundKind::inertia, BoundKind::pieces})
+    if (const auto bound = factorized_bound(k0, kind)) list = text("below %.10g by %s, ", *bound, name(kind));
   if (const auto bound = gershgorin_bound(k0)) list += text("at most %.10g by Gershgorin, ", *bound);
   return list.empty() ? "not bounded" : list.substr(0, list.size() - 2);
 }
 
 Json k0_json(const StiffestMode& k0, std::optional<int> digits) {
-  Json json{
-      {"value", nullptr},
-      {"status", "not converged"},
-      {"value_kind", nullptr},
-      {"residual", nullptr},
-      {"upper_bound", number(k0.upper_bound)},
-      {"bound", name(k0.bound_kind)},
-      {"bounds", {{"inertia", number(inertia_bound(k0))}, {"gershgorin", number(gershgorin_bound(k0))}}},
-      {"products", k0.products},
-      {"smallest", number(k0.smallest)}};
+  Json json{{"value", nullptr},
+            {"status", "not converged"},
+            {"value_kind", nullptr},
+            {"residual", nullptr},
+            {"upper_bound", number(k0.upper_bound)},
+            {"bound", name(k0.bound_kind)},
+            {"bounds",
+             {{"inertia", number(factorized_bound(k0, BoundKind::inertia))},
+              {"gershgorin", number(gershgorin_bound(k0))}}},
+            {"products", k0.products},
+            {"smallest", number(k0.smallest)}};
   if (digits) json["digits"] = *digits;
+  if (const auto bound = factorized_bound(k0, BoundKind::pieces)) json["bounds"]["pieces"] = *bound;
   if (!k0.converged) return json;
   json["value"] = number(k0.value);
   json["status"] = "converged";
@@ -202,6 +215,9 @@ void print(std::string_view method, const MethodLimits& l) {
 }
 
 void check(const CommonOptions& common, const LimitsOptions& options) {
+  if (!(options.certify_loss >= 1e-5 && options.certify_loss < 1))
+    throw InputError("--certify-loss", 0,
+                     text("is %g, expected at least 1e-5 and less than 1", options.certify_loss));
   if (common.given.contains("--digits") && (options.digits < 1 || options.digits > 10))
     throw InputError("--digits", 0, text("is %d, expected 1 to 10", options.digits));
   if (!(options.max_step > 0 && std::isfinite(options.max_step)))
@@ -286,6 +302,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   StructureLimits answer(std::move(structure), {.safety = options.safety,
                                                 .seed = common.seed,
                                                 .digits = options.digits,
+                                                .certify_loss = options.certify_loss,
                                                 .max_step = options.max_step});
 
   std::vector<Row> rows;

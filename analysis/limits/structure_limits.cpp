@@ -30,7 +30,8 @@ const StiffestMode& StructureLimits::k0() {
   if (k0_) return *k0_;
   const ArpackOptions options = search(options_.k0_tolerance);
   const StructuralMatrices& s = structure_->matrices;
-  k0_ = options_.certify ? stiffest_mode(s, options) : estimated_stiffest_mode(s, options);
+  k0_ = options_.certify ? stiffest_mode(s, options, 2 * options_.certify_loss)
+                         : estimated_stiffest_mode(s, options);
   if (!options_.certify && options_.definiteness) find_lowest(s, options, *k0_);
   return *k0_;
 }

@@ -30,6 +30,7 @@ struct StructureLimitsOptions {
   double k0_tolerance = 1e-10;  // of k0's residual, relative
   /// Digits of h that are wanted of the searches for eigenvalues; 0: all of up to many_unknowns, else 4.
   int digits = 0;
+  double certify_loss = 1e-3;        // of h, about: what a proof by pieces may lose
   std::optional<double> max_step{};  // recommended where nothing limits the step [s]
   /// Whether K is indefinite is found out also without `certify`, which costs a factorization.
   bool definiteness = false;

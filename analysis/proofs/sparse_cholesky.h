@@ -26,6 +26,8 @@ class SparseCholesky {
   bool analyze(const SparseMatrix& pattern);
   /// Entries of L, its diagonal with them; after an analysis.
   double entries() const;
+  /// A bound e on rounding: what is factorized is A + ΔA with -e diag(A) <= ΔA <= e diag(A).
+  double error() const;
 
   /// True if every pivot is positive and finite. Analyzes where that was not done.
   bool factorize(const SparseMatrix& a);

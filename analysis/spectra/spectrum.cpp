@@ -31,22 +31,6 @@ double largest_row_sum(const SparseMatrix& a) {
   return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
 }
 
-// A symmetric matrix as an operator, its eigenvalues bounded by Gershgorin's discs.
-LinearOperator symmetric_operator(SparseMatrix a) {
-  const Eigen::VectorXd centres = a.diagonal();
-  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
-  const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
-  LinearOperator op{matrix->rows(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
-  if (op.size < many_unknowns) {
-    op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; };
-  } else {  // row by row, which reads `out` but once
-    op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-      out.noalias() = matrix->transpose() * in;
-    };
-  }
-  return op;
-}
-
 StiffestMode dense_spectrum(const LinearOperator& s) {
   const Eigen::MatrixXd matrix = symmetric_part(as_dense(s));
   if (!matrix.allFinite())
@@ -183,6 +167,21 @@ void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, Defi
 
 }  // namespace
 
+LinearOperator symmetric_operator(SparseMatrix a) {
+  const Eigen::VectorXd centres = a.diagonal();
+  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
+  const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
+  LinearOperator op{matrix->rows(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+  if (op.size < many_unknowns) {
+    op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; };
+  } else {  // row by row, which reads `out` but once
+    op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+      out.noalias() = matrix->transpose() * in;
+    };
+  }
+  return op;
+}
+
 // With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
 LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
   if (is_diagonal(mass)) return symmetric_operator(scaled(a, inverse_root(mass)));
@@ -228,7 +227,7 @@ void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, Stif
   find_lowest(s, options, proof, mode);
 }
 
-StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options, double loss) {
   StiffestMode mode = estimated_stiffest_mode(s, options);
   if (is_diagonal(s.mass)) {
     const SparseMatrix matrix = scaled(s.stiffness, inverse_root(s.mass));
@@ -237,15 +236,17 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   }
   if (!mode.converged || !s.symmetric) return mode;
 
-  DefinitenessProof proof({s.stiffness, s.mass, {}});
+  DefinitenessProof proof({s.stiffness, s.mass, {}}, loss);
   find_lowest(s, options, proof, mode);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;
   double gap = std::max(mode.residual, 1e-10 * scale);
-  while (mode.value + gap < mode.upper_bound && !proof.holds(mode.value + gap, 0, 1)) gap *= 8;
+  if (!proof.factorizes()) gap = std::max(gap, loss * scale);
+  while (mode.value + gap < mode.upper_bound && !proof.holds(mode.value + gap, 0, 1))
+    gap *= proof.pieces() > 0 ? 2 : 8;
   if (mode.value + gap < mode.upper_bound) {
     mode.upper_bound = mode.value + gap;
-    mode.bound_kind = BoundKind::inertia;
+    mode.bound_kind = proof.pieces() > 0 ? BoundKind::pieces : BoundKind::inertia;
   }
   return mode;
 }

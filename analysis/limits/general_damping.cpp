@@ -6,6 +6,7 @@
 
 #include "analysis/constants.h"
 #include "analysis/spectra/generator_spectrum.h"
+#include "analysis/spectra/lanczos.h"
 #include "analysis/spectra/transition_limit.h"
 
 namespace springstab {
@@ -54,7 +55,7 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
   // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
   constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-7, stiffened = 1e-5;
   const double last = stiffening.factor == 1 ? sharp : stiffened;
-  const bool few_digits = range.tolerance() > last;
+  const bool few_digits = range.tolerance() > lanczos_tolerance;
   const double last_change = few_digits ? range.tolerance() / 100 : 1e-6;
   double h = infinity;
   Eigen::VectorXd near;

@@ -18,8 +18,8 @@ class SparseCholesky {
   static const Eigen::Index blocked_from;
   /// Beyond as many unknowns nothing is analyzed.
   static const Eigen::Index unknowns_limit;
-  /// Beyond as many entries of L, 2 GB, nothing is factorized.
-  static constexpr double entries_limit = 2.5e8;
+  /// Beyond as many entries of L, 1 GB with what pads them, nothing is factorized.
+  static constexpr double entries_limit = 1e8;
 
   /// Of the pattern that all matrices have, compressed, both triangles stored; nothing is done at a second
   /// call. False where a factorization would be too large.

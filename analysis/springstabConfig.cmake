@@ -1,6 +1,6 @@
 # Found by find_package(springstab [COMPONENTS solvers analysis]): defines springstab::solvers, and
 # springstab::analysis unless the components leave it out. The libraries are static, so what they link privately
-# is looked up here as well: Eigen for both, GSL and ARPACK for analysis alone.
+# is looked up here as well: Eigen for both, GSL, ARPACK and, where it was there, CHOLMOD for analysis alone.
 include(CMakeFindDependencyMacro)
 set(springstab_wanted ${springstab_FIND_COMPONENTS})
 if(NOT springstab_wanted)
@@ -14,6 +14,9 @@ if(analysis IN_LIST springstab_wanted)
   find_dependency(GSL)
   list(PREPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
   find_dependency(Arpack)
+  if(@cholmod_is_linked@)
+    find_dependency(Cholmod)
+  endif()
   list(POP_FRONT CMAKE_MODULE_PATH)
   include(${CMAKE_CURRENT_LIST_DIR}/springstab_analysisTargets.cmake)
   set(springstab_analysis_FOUND TRUE)

@@ -35,8 +35,8 @@ Json damping_json(const DampingModel& damping) {
   return json;
 }
 
-std::optional<double> inertia_bound(const StiffestMode& k0) {
-  return k0.bound_kind == BoundKind::inertia ? std::optional(k0.upper_bound) : std::nullopt;
+std::optional<double> factorized_bound(const StiffestMode& k0, BoundKind kind) {
+  return k0.bound_kind == kind ? std::optional(k0.upper_bound) : std::nullopt;
 }
 
 std::optional<double> gershgorin_bound(const StiffestMode& k0) {
@@ -45,22 +45,26 @@ std::optional<double> gershgorin_bound(const StiffestMode& k0) {
 
 std::string bounds(const StiffestMode& k0) {
   std::string list;
-  if (const auto bound = inertia_bound(k0)) list = text("below %.10g by inertia, ", *bound);
+  for (const BoundKind kind : {BoundKind::inertia, BoundKind::pieces})
+    if (const auto bound = factorized_bound(k0, kind)) list = text("below %.10g by %s, ", *bound, name(kind));
   if (const auto bound = gershgorin_bound(k0)) list += text("at most %.10g by Gershgorin, ", *bound);
   return list.empty() ? "not bounded" : list.substr(0, list.size() - 2);
 }
 
-Json k0_json(const StiffestMode& k0) {
-  Json json{
-      {"value", nullptr},
-      {"status", "not converged"},
-      {"value_kind", nullptr},
-      {"residual", nullptr},
-      {"upper_bound", number(k0.upper_bound)},
-      {"bound", name(k0.bound_kind)},
-      {"bounds", {{"inertia", number(inertia_bound(k0))}, {"gershgorin", number(gershgorin_bound(k0))}}},
-      {"products", k0.products},
-      {"smallest", number(k0.smallest)}};
+Json k0_json(const StiffestMode& k0, std::optional<int> digits) {
+  Json json{{"value", nullptr},
+            {"status", "not converged"},
+            {"value_kind", nullptr},
+            {"residual", nullptr},
+            {"upper_bound", number(k0.upper_bound)},
+            {"bound", name(k0.bound_kind)},
+            {"bounds",
+             {{"inertia", number(factorized_bound(k0, BoundKind::inertia))},
+              {"gershgorin", number(gershgorin_bound(k0))}}},
+            {"products", k0.products},
+            {"smallest", number(k0.smallest)}};
+  if (digits) json["digits"] = *digits;
+  if (const auto bound = factorized_bound(k0, BoundKind::pieces)) json["bounds"]["pieces"] = *bound;
   if (!k0.converged) return json;
   json["value"] = number(k0.value);
   json["status"] = "converged";
@@ -102,6 +106,9 @@ void print(StructureLimits& answer, const std::string& size, double safety) {
   std::cout << (size.empty() ? "" : "\n") << size;
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
   std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
+  if (const auto digits = answer.digits(); digits && k0.value > 0)
+    std::cout << text("searched for %d digits of h: by the residual it is wrong by %.1g of itself at most\n",
+                      *digits, k0.residual / k0.value / 2);
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
   if (k0.indefinite) {
     const double rate = answer.growth().value_or(0);
@@ -163,7 +170,12 @@ void print(std::string_view method, const MethodLimits& l) {
   std::cout << (l.designed ? text("%.6g, %.4g", l.designed->h_max, l.designed->alpha) : "-") << '\n';
 }
 
-void check(const LimitsOptions& options) {
+void check(const CommonOptions& common, const LimitsOptions& options) {
+  if (!(options.certify_loss >= 1e-5 && options.certify_loss < 1))
+    throw InputError("--certify-loss", 0,
+                     text("is %g, expected at least 1e-5 and less than 1", options.certify_loss));
+  if (common.given.contains("--digits") && (options.digits < 1 || options.digits > 10))
+    throw InputError("--digits", 0, text("is %d, expected 1 to 10", options.digits));
   if (!(options.max_step > 0 && std::isfinite(options.max_step)))
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
   if (!options.method.empty() && !options.methods.empty())
@@ -177,7 +189,7 @@ Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety
   Json json{{"degrees_of_freedom", matrices.size()},
             {"condensed", matrices.condensed},
             {"condensed_rate", matrices.condensed_rate > 0 ? number(matrices.condensed_rate) : Json()},
-            {"k0", k0_json(answer.k0())},
+            {"k0", k0_json(answer.k0(), answer.digits())},
             {"stiffness_indefinite", answer.k0().indefinite},
             {"symmetric", matrices.symmetric},
             {"growth_rate", number(answer.growth())},
@@ -236,7 +248,7 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
 }  // namespace
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
-  check(options);
+  check(common, options);
   const std::vector<Method> methods =
       options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
   Subject subject(options.input, true);
@@ -244,8 +256,11 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   print_size_warning(subject);
   Structure structure = subject.structure(subject.initial_state(common.seed));
   structure.every_pose = subject.every_pose();
-  StructureLimits answer(std::move(structure),
-                         {.safety = options.safety, .seed = common.seed, .max_step = options.max_step});
+  StructureLimits answer(std::move(structure), {.safety = options.safety,
+                                                .seed = common.seed,
+                                                .digits = options.digits,
+                                                .certify_loss = options.certify_loss,
+                                                .max_step = options.max_step});
 
   std::vector<Row> rows;
   std::optional<Waiting> waiting(std::in_place, "limits", common.quiet);

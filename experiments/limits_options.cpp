@@ -49,6 +49,12 @@ Subcommand limits_command() {
                .with_default(),
            Option("--max-step", &o->max_step, "recommended where nothing limits the step, in seconds")
                .with_default(),
+           Option("--digits", &o->digits, "of h, 1 to 10 (default: all, or 4 from 20 000 unknowns on)")
+               .shown_as("N"),
+           Option("--certify-loss", &o->certify_loss,
+                  "part of h that a proof by pieces of a large system may lose")
+               .with_default()
+               .shown_as("X"),
            Option("--certify", &o->certify, "exit 3 unless every method asked for has a certified step")}),
       .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};
 }

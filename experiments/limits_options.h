@@ -15,6 +15,8 @@ struct LimitsOptions {
   double safety = 1.5;
   double max_step = 0.01;  // [s], where nothing limits the step
   bool certify = false;
+  double certify_loss = 1e-3;  // of h
+  int digits = 0;              // of h; 0: all, or 4 of many unknowns
 };
 
 /// Stable steps and damping of a structure; returns an ExitStatus.

@@ -21,7 +21,11 @@ const char* name(DampingModel::Kind kind) {
   return name_in(names, kind);
 }
 
-const char* name(BoundKind kind) { return kind == BoundKind::inertia ? "inertia" : "gershgorin"; }
+const char* name(BoundKind kind) {
+  static constexpr std::pair<BoundKind, const char*> names[] = {
+      {BoundKind::inertia, "inertia"}, {BoundKind::pieces, "pieces"}, {BoundKind::gershgorin, "gershgorin"}};
+  return name_in(names, kind);
+}
 
 const char* name(LimitSource source) { return source == LimitSource::exact ? "exact" : "estimate"; }
 

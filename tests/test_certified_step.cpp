@@ -214,7 +214,7 @@ BOOST_AUTO_TEST_CASE(unconverged_eigenvalues_never_become_a_step, *boost::unit_t
 
 // K and D of diagonal matrices are proved by their diagonals alone, whatever their size.
 BOOST_AUTO_TEST_CASE(too_many_unknowns_to_factorize_is_the_reason_given, *boost::unit_test::label("slow")) {
-  const Eigen::Index n = DefinitenessProof::factorization_limit + 1;
+  const Eigen::Index n = SparseCholesky::unknowns_limit + 1;
   std::vector<double> k(n, 1), d(n, 1);
   k[0] = 100, d[1] = 10;
   const StructuralMatrices s = prepare(diagonal(k), {}, diagonal(d));

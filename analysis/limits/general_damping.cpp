@@ -7,6 +7,7 @@
 #include "analysis/constants.h"
 #include "analysis/limits/split_damping.h"
 #include "analysis/spectra/generator_spectrum.h"
+#include "analysis/spectra/lanczos.h"
 #include "analysis/spectra/transition_limit.h"
 
 namespace springstab {
@@ -34,6 +35,9 @@ double following_step(const Method& method, const std::vector<std::complex<doubl
   return h;
 }
 
+// h is wrong by half of the residual at most.
+double first_gap(const ArpackOptions& options) { return std::max(1e-10, options.tolerance / 2); }
+
 StructuralMatrices stiffened(const StructuralMatrices& s, const Stiffening& stiffening) {
   StructuralMatrices stiffer = s;
   stiffer.stiffness *= stiffening.factor;
@@ -52,15 +56,17 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
   // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
   constexpr double first = 1e-2, loose = 1e-3, sharp = 1e-7, stiffened = 1e-5;
   const double last = stiffening.factor == 1 ? sharp : stiffened;
+  const bool few_digits = range.tolerance() > lanczos_tolerance;
+  const double last_change = few_digits ? range.tolerance() / 100 : 1e-6;
   double h = infinity;
   Eigen::VectorXd near;
   for (const auto& [x, y] : {std::pair{0.0, 1.0}, {1.0, 0.0}}) {
-    const std::optional<ExtremePoint> p = range.farthest(x, y, first);
+    const std::optional<ExtremePoint> p = range.farthest(x, y, few_digits ? last : first);
     if (!p) return std::nullopt;
     if (const double next = root(a, b, c, stiffening(*p), signed_damping); next < h)
       h = next, near = p->vector;
   }
-  double tolerance = loose;
+  double tolerance = few_digits ? last : loose;
   for (int i = 0; i < 50 && std::isfinite(h); ++i) {
     const double x = a * h, y = b * h * h;
     const std::optional<ExtremePoint> p =
@@ -70,18 +76,19 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
     const double next = std::min(h, root(a, b, c, stiffening(*p), signed_damping));
     const double change = 1 - next / h;
     h = next;
-    if (tolerance == last && change < 1e-6) break;  // the next change is about its square
+    if (tolerance == last && change < last_change) break;  // the next change is about its square
     if (change < 1e-3) tolerance = last;
   }
   return h;
 }
 
-std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h) {
+std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h,
+                                   double gap) {
   if (!std::isfinite(h)) return h;
   const auto holds = [&](double step) {
     return proof.holds(condition.bound, condition.x * step, condition.y * step * step);
   };
-  double gap = 1e-10, failed = 0;
+  double failed = 0;
   for (; !holds(h * (1 - gap)); gap = std::min(4 * gap, (1 + gap) / 2)) {
     failed = gap;
     if (gap > 1 - 1e-3) return std::nullopt;
@@ -95,11 +102,12 @@ std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& co
 
 std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane& condition,
                                    ArpackOptions options) {
+  const double gap = first_gap(options);
   options.tolerance = std::max(options.tolerance, 1e-6);  // only guides the proof
   const std::optional<double> h = exact_limit(NumericalRange(s, options), condition);
   if (!h) return std::nullopt;
   DefinitenessProof proof(s);
-  return proved_limit(proof, condition, *h);
+  return proved_limit(proof, condition, *h, gap);
 }
 
 GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0,
@@ -109,6 +117,7 @@ GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& 
       damping_(damping),
       safety_(safety),
       proofs_(proofs),
+      first_gap_(first_gap(options)),
       s_(s),
       options_(options),
       certified_(s, options) {}
@@ -174,7 +183,7 @@ void GeneralDamping::set_certified(std::optional<double> h, Proof proof, MethodL
     limits.proof = proof;
     limits.unproved = {};
   } else {
-    limits.unproved = s_.size() > DefinitenessProof::factorization_limit
+    limits.unproved = s_.size() > SparseCholesky::unknowns_limit
                           ? "there are too many unknowns to factorize a matrix"
                           : "no convex part of the region was proved to hold the damping and stiffness";
   }
@@ -190,8 +199,8 @@ void GeneralDamping::add_exact(const HalfPlane& condition, MethodLimits& limits)
   }
   limits.status = std::isinf(*limits.h_max) ? LimitStatus::unlimited : LimitStatus::limited;
   if (proofs_)
-    set_certified(proved_limit(certified_.proof(), condition, *limits.h_max), Proof::matrix_condition,
-                  limits);
+    set_certified(proved_limit(certified_.proof(), condition, *limits.h_max, first_gap_),
+                  Proof::matrix_condition, limits);
   if (std::isfinite(least)) limits.recommended = least;
 }
 

@@ -19,8 +19,10 @@ namespace springstab {
 std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
                                   const Stiffening& stiffening = {}, bool signed_damping = false);
 
-/// The largest step found below `h` at which x hD' + y h²K' < bound is proved; nothing where none was.
-std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h);
+/// The largest step found below `h` at which x hD' + y h²K' < bound is proved, from h (1 - gap) on; nothing
+/// where none was.
+std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h,
+                                   double gap = 1e-10);
 
 /// Below what it returns a method with that exact condition is stable for these matrices, K and D positive
 /// semidefinite: proved. Nothing where no proof was found.
@@ -61,6 +63,7 @@ class GeneralDamping {
   DampingModel damping_;
   double safety_;
   bool proofs_;
+  double first_gap_;  // of the proofs, relative to h
   const StructuralMatrices& s_;
   ArpackOptions options_;
   std::vector<std::optional<std::vector<std::complex<double>>>> spectra_;  // of each stiffening, when needed

@@ -15,16 +15,24 @@ StructureLimits::StructureLimits(Structure structure, const StructureLimitsOptio
       options_(options),
       k0_(std::move(k0)) {}
 
-ArpackOptions StructureLimits::search() const {
-  return {.seed = options_.seed, .before_product = options_.before_product};
+std::optional<int> StructureLimits::digits() const {
+  if (options_.digits > 0) return options_.digits;
+  return structure_->matrices.size() < many_unknowns ? std::nullopt : std::optional(4);
+}
+
+// h has half the relative error of k0, which is below the residual: h is wrong by less than a quarter of its
+// last digit's ten.
+ArpackOptions StructureLimits::search(double tolerance) const {
+  if (const auto wanted = digits()) tolerance = std::max(tolerance, 5 * std::pow(10, -*wanted));
+  return {.tolerance = tolerance, .seed = options_.seed, .before_product = options_.before_product};
 }
 
 const StiffestMode& StructureLimits::k0() {
   if (k0_) return *k0_;
-  ArpackOptions options = search();
-  options.tolerance = options_.k0_tolerance;
+  const ArpackOptions options = search(options_.k0_tolerance);
   const StructuralMatrices& s = structure_->matrices;
-  k0_ = options_.certify ? stiffest_mode(s, options) : estimated_stiffest_mode(s, options);
+  k0_ = options_.certify ? stiffest_mode(s, options, 2 * options_.certify_loss)
+                         : estimated_stiffest_mode(s, options);
   if (!options_.certify && options_.definiteness) find_lowest(s, options, *k0_);
   return *k0_;
 }
@@ -36,7 +44,7 @@ GeneralDamping* StructureLimits::general() {
   if (!k0().converged) return nullptr;
   if (!general_)
     general_ = std::make_unique<GeneralDamping>(matrices, k0(), damping, options_.safety, options_.certify,
-                                                search());
+                                                search(ArpackOptions().tolerance));
   return general_.get();
 }
 
@@ -83,7 +91,8 @@ MethodLimits StructureLimits::compute(const Method& method) {
   if (structure_->every_pose)
     if (std::optional<HalfPlane> condition = matrix_condition(method, structure_->matrices)) {
       condition->x = std::max(condition->x, 0.0);  // damping that helps may be absent in some pose
-      limits.every_pose = proved_limit(*structure_->every_pose, *condition, search());
+      limits.every_pose =
+          proved_limit(*structure_->every_pose, *condition, search(ArpackOptions().tolerance));
     }
   if (!general) add_transient_growth(method, limits);
   return limits;

@@ -27,8 +27,11 @@ struct StructureLimitsOptions {
   /// Else no bound on k0, nothing certified, no step for every pose and no transient growth, which is
   /// quicker.
   bool certify = true;
-  std::uint64_t seed = 1;            // of the start vectors
-  double k0_tolerance = 1e-10;       // of k0's residual, relative
+  std::uint64_t seed = 1;       // of the start vectors
+  double k0_tolerance = 1e-10;  // of k0's residual, relative
+  /// Digits of h that are wanted of the searches for eigenvalues; 0: all of up to many_unknowns, else 4.
+  int digits = 0;
+  double certify_loss = 1e-3;        // of h, about: what a proof by pieces may lose
   std::optional<double> max_step{};  // recommended where nothing limits the step [s]
   /// Whether K is indefinite is found out also without `certify`, which costs a factorization.
   bool definiteness = false;
@@ -44,6 +47,8 @@ class StructureLimits {
                            std::optional<StiffestMode> k0 = std::nullopt);
 
   const Structure& structure() const { return *structure_; }
+  /// Digits of h that the searches are for; nothing where they are for all.
+  std::optional<int> digits() const;
   /// Throws std::invalid_argument for rates of motion beyond double precision.
   const StiffestMode& k0();
   /// All unknown where k0 did not converge.
@@ -56,7 +61,7 @@ class StructureLimits {
   std::vector<DampedMode> growing_modes();
 
  private:
-  ArpackOptions search() const;
+  ArpackOptions search(double tolerance) const;
   GeneralDamping* general();                    // null where k0 and two numbers decide
   GeneralDamping* split(const Method& method);  // null where it takes none or all of D implicitly
   DampingModel damping_with(const Method& method) const;

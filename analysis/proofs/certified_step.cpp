@@ -74,7 +74,7 @@ std::optional<double> CertifiedSteps::search(const Method& method, const Stiffen
     if (!(fit.h > shortest) || fit.edges.empty() || !std::isfinite(fit.h)) return std::nullopt;
     const bool from_origin = std::any_of(fit.edges.begin(), fit.edges.end(),
                                          [](const HalfPlane& edge) { return edge.bound == 0; });
-    if (from_origin && s_.size() > DefinitenessProof::factorization_limit) return std::nullopt;
+    if (from_origin && s_.size() > SparseCholesky::unknowns_limit) return std::nullopt;
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();

@@ -3,30 +3,42 @@
 
 #include <memory>
 
+#include "analysis/proofs/sparse_cholesky.h"
 #include "solvers/linear/structural_matrices.h"
 
 namespace springstab {
 
 /// Proofs for one structure, with one symbolic factorization for all its proofs.
+class Pieces;
+
 class DefinitenessProof {
  public:
-  /// Copies what it needs, scaled so that the mass has a unit diagonal. Where there are more than
-  /// `factorization_limit` unknowns nothing is factorized, and only diagonally dominant matrices are proved.
-  explicit DefinitenessProof(const StructuralMatrices& s);
-  ~DefinitenessProof();
-  DefinitenessProof(DefinitenessProof&&) noexcept;
-
-  static constexpr Eigen::Index factorization_limit = 150'000;
+  /// Copies what it needs, scaled so that the mass has a unit diagonal. Where SparseCholesky finds too many
+  /// unknowns the proof is by pieces, which overlap enough for σ I - K to be proved at a σ about `loss` k0
+  /// above k0; without CHOLMOD only diagonally dominant matrices are proved there.
+  explicit DefinitenessProof(const StructuralMatrices& s, double loss = usual_loss);
+  static constexpr double usual_loss = 2e-3;
 
   /// Whether c M - a D - b K is proved to be positive definite. No proof is no proof of the contrary.
   bool holds(double c, double a, double b);
 
+  /// Whether matrices of this pattern are factorized at once. Analyzes it.
+  bool factorizes();
+  /// Into how many pieces; 0 where none was needed so far.
+  int pieces() const;
+
+  /// Whether K has no eigenvalue below zero but for rounding: see is_semidefinite.
+  bool stiffness_is_semidefinite();
+
  private:
-  struct Factor;
+  bool in_pieces(const SparseMatrix& matrix);
+  SparseMatrix sum(double c, double a, double b) const;
 
   SparseMatrix mass_, damping_, stiffness_;
   Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
-  std::unique_ptr<Factor> factor_;
+  SparseCholesky cholesky_;
+  double loss_;
+  std::shared_ptr<const Pieces> pieces_;
 };
 
 /// Whether a symmetric matrix has no eigenvalue below zero but for rounding: of 1e-9 of the diagonal, unknown

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "analysis/blas_threads.h"
+
 namespace springstab {
 namespace {
 
@@ -23,6 +25,7 @@ class Solving {
     if (solving) throw std::logic_error("an eigenvalue solve was started from inside another one's product");
     lock_ = std::unique_lock(arpack_mutex);
     solving = true;
+    use_one_blas_thread();
   }
   ~Solving() { solving = false; }
   Solving(const Solving&) = delete;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/constants.h"
 #include "analysis/spectra/chebyshev_filter.h"
+#include "analysis/spectra/lanczos.h"
 #include "analysis/spectra/spectrum.h"
 #include "solvers/linear/dense_solvers.h"
 
@@ -24,6 +26,11 @@ NumericalRange::NumericalRange(const StructuralMatrices& s, ArpackOptions option
   } else {
     damping_ = {size_, [](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.setZero(in.size()); }, 0, 0};
   }
+  if (size_ >= many_unknowns && is_diagonal(s.mass)) {
+    const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
+    sparse_stiffness_ = scaled(s.stiffness, d);
+    if (s.has_damping()) sparse_damping_ = scaled(s.damping, d);
+  }
   if (size_ > dense_limit) return;
   dense_damping_ = symmetric_part(as_dense(damping_));
   dense_stiffness_ = symmetric_part(as_dense(stiffness_));
@@ -37,6 +44,33 @@ ExtremePoint NumericalRange::point(const Eigen::VectorXd& v) const {
   return {{d, v.dot(image)}, v};
 }
 
+// a D' + b K', shifted to a positive semidefinite one, where a bound is known: the largest eigenvalue may be
+// 0, and the null space is hidden from ARPACK, which multiplies even its start vector by the operator.
+LinearOperator NumericalRange::sum(double a, double b) const {
+  const double bound = lowest(a, damping_) + lowest(b, stiffness_);
+  const double shift = std::isfinite(bound) ? -bound : 0;
+  if (sparse_stiffness_.size() > 0) {
+    SparseMatrix matrix = b * sparse_stiffness_;
+    if (sparse_damping_.size() > 0) matrix = SparseMatrix(matrix + a * sparse_damping_);
+    LinearOperator op = symmetric_operator(std::move(matrix));
+    const auto apply = std::move(op.apply);
+    op.apply = [apply, shift](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+      apply(in, out);
+      out += shift * in;
+    };
+    op.lowest = bound + shift;
+    return op;
+  }
+  return {
+      size_,
+      [this, a, b, shift, part = Eigen::VectorXd()](const Eigen::VectorXd& in, Eigen::VectorXd& out) mutable {
+        stiffness_.apply(in, out);
+        damping_.apply(in, part);
+        out = b * out + a * part + shift * in;
+      },
+      bound + shift};
+}
+
 std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double tolerance,
                                                      const Eigen::VectorXd& near) const {
   if (size_ <= dense_limit) {
@@ -45,25 +79,17 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
     if (solver.info() != Eigen::Success) return std::nullopt;
     return point(solver.eigenvectors().rightCols<1>());
   }
-  // Shifted to a positive semidefinite one, where a bound is known: the largest eigenvalue may be 0, and the
-  // null space is hidden from ARPACK, which multiplies even its start vector by the operator.
-  const double bound = lowest(a, damping_) + lowest(b, stiffness_);
-  const double shift = std::isfinite(bound) ? -bound : 0;
-  Eigen::VectorXd part;
-  const LinearOperator sum{size_,
-                           [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-                             stiffness_.apply(in, out);
-                             damping_.apply(in, part);
-                             out = b * out + a * part + shift * in;
-                           },
-                           bound + shift};
+  const LinearOperator matrix = sum(a, b);
   ArpackOptions options = options_;
   options.tolerance = std::max(options.tolerance, tolerance);
   if (near.size() > 0) {  // with a little of every other vector, lest the largest is orthogonal to it
     const Eigen::VectorXd random = start_vector(size_, {}, options_.seed);
     options.start = near + 1e-2 / random.norm() * random;
   }
-  const SymmetricEigenpairs pairs = largest_eigenpair(sum, options);
+  SymmetricEigenpairs pairs;
+  if (size_ >= many_unknowns && options.tolerance >= lanczos_tolerance)
+    pairs = largest_by_lanczos(matrix, options, true);
+  if (!pairs.converged) pairs = largest_eigenpair(matrix, options);
   if (!pairs.converged) return std::nullopt;
   return point(pairs.vectors.col(0));
 }

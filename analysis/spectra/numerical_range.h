@@ -25,6 +25,9 @@ class NumericalRange {
   explicit NumericalRange(const StructuralMatrices& s, ArpackOptions options = {});
   explicit NumericalRange(StructuralMatrices&&, ArpackOptions = {}) = delete;
 
+  /// Of its searches, at least.
+  double tolerance() const { return options_.tolerance; }
+
   /// The point of W with the largest a·d + b·k, but for rounding and ARPACK's tolerance; nothing when that
   /// did not converge. It is an estimate from within: no proof that W reaches no farther. `tolerance` may
   /// loosen ARPACK's, and `near` is the vector of a nearby direction to start from.
@@ -32,12 +35,14 @@ class NumericalRange {
                                        const Eigen::VectorXd& near = {}) const;
 
  private:
+  LinearOperator sum(double a, double b) const;
   ExtremePoint point(const Eigen::VectorXd& v) const;
 
   Eigen::Index size_;
   ArpackOptions options_;
   LinearOperator damping_, stiffness_;  // mass-scaled
   Eigen::MatrixXd dense_damping_, dense_stiffness_;
+  SparseMatrix sparse_damping_, sparse_stiffness_;  // of many unknowns with a diagonal mass
 };
 
 }  // namespace springstab

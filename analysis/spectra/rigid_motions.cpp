@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/proofs/sparse_cholesky.h"
+
 namespace springstab {
 namespace {
 
@@ -107,17 +109,35 @@ class Pivots {
   std::vector<bool> moves_;
 };
 
+// Whether many unknowns that resist have pivots above their noise, all of them, which a factorization by
+// blocks finds out sooner: A - diag(r) ≻ 0 makes each pivot xᵀAx > Σ r_i x_i².
+bool is_above(SparseMatrix a, const Eigen::VectorXd& noise, const std::vector<int>& place) {
+  if (a.rows() < SparseCholesky::blocked_from) return false;
+  for (Eigen::Index i = 0; i < noise.size(); ++i)
+    if (place[i] >= 0) a.coeffRef(place[i], place[i]) -= noise[i];
+  return SparseCholesky().factorize(a);
+}
+
 }  // namespace
 
 StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
   const Eigen::VectorXd mass = s.mass.diagonal();
   SparseMatrix sum = normalized(s.stiffness, mass);
   if (s.has_damping()) sum = SparseMatrix(sum + normalized(s.damping, mass));
-  const std::vector<bool> moving = Pivots(sum, rounding * sum.diagonal() + global_rounding * mass).moving();
-  std::vector<int> place(s.size(), -1);
+  const Eigen::VectorXd noise = rounding * sum.diagonal() + global_rounding * mass;
+  std::vector<int> place;
   int size = 0;
-  for (Eigen::Index i = 0; i < s.size(); ++i)
-    if (moving[i]) place[i] = size++;
+  const auto keep = [&](const auto& moves) {
+    place.assign(s.size(), -1);
+    size = 0;
+    for (Eigen::Index i = 0; i < s.size(); ++i)
+      if (moves(i)) place[i] = size++;
+  };
+  keep([&](Eigen::Index i) { return sum.diagonal()[i] > 0; });
+  if (!is_above(rows_and_columns(sum, place, size), noise, place)) {
+    const std::vector<bool> moving = Pivots(sum, noise).moving();
+    keep([&](Eigen::Index i) { return moving[i]; });
+  }
 
   StructuralMatrices rest;
   rest.stiffness = rows_and_columns(s.stiffness, place, size);

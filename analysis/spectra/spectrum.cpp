@@ -11,6 +11,7 @@
 #include "analysis/constants.h"
 #include "analysis/proofs/definiteness.h"
 #include "analysis/spectra/chebyshev_filter.h"
+#include "analysis/spectra/lanczos.h"
 #include "solvers/linear/dense_solvers.h"
 
 namespace springstab {
@@ -28,16 +29,6 @@ Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().
 
 double largest_row_sum(const SparseMatrix& a) {
   return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
-}
-
-// A symmetric matrix as an operator, its eigenvalues bounded by Gershgorin's discs.
-LinearOperator symmetric_operator(SparseMatrix a) {
-  const Eigen::VectorXd centres = a.diagonal();
-  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
-  const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
-  return {matrix->rows(),
-          [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; },
-          (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
 }
 
 StiffestMode dense_spectrum(const LinearOperator& s) {
@@ -110,10 +101,13 @@ StiffestMode nonsymmetric_spectrum(const LinearOperator& s, const ArpackOptions&
 }
 
 StiffestMode arpack_spectrum(const LinearOperator& s, const ArpackOptions& options) {
-  const SymmetricEigenpairs pairs = largest_eigenpair(s, options);
+  const bool few_digits = s.size >= many_unknowns && options.tolerance >= lanczos_tolerance;
+  SymmetricEigenpairs pairs;
+  if (few_digits) pairs = largest_by_lanczos(s, options, false);
   StiffestMode mode;
-  mode.converged = pairs.converged;
   mode.products = pairs.products;
+  if (!pairs.converged) pairs = largest_eigenpair(s, options), mode.products += pairs.products;
+  mode.converged = pairs.converged;
   if (!pairs.converged) return mode;
   mode.value = pairs.values[0];
   mode.residual = pairs.residuals[0];
@@ -149,7 +143,44 @@ void expect_within_double_precision(const StructuralMatrices& s) {
   throw std::invalid_argument(message.str());
 }
 
+void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, DefinitenessProof& proof,
+                 StiffestMode& mode) {
+  if (!proof.factorizes()) return;
+  mode.indefinite = !proof.stiffness_is_semidefinite();
+  if (!mode.indefinite) return;
+  mode.lowest = mode.smallest;
+  if (mode.lowest) return;
+  const LinearOperator k = scaled_stiffness(s);
+  const LinearOperator negative{k.size,
+                                [&k](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+                                  k.apply(in, out);
+                                  out = -out;
+                                },
+                                -k.highest, -k.lowest};
+  constexpr int patience = 300;  // restarts: a soft end among many is not worth more
+  ArpackOptions few = options;
+  few.max_restarts = std::min(few.max_restarts, patience);
+  const SymmetricEigenpairs pairs = largest_eigenpair(negative, few);
+  mode.products += pairs.products;
+  if (pairs.converged) mode.lowest = -pairs.values[0];
+}
+
 }  // namespace
+
+LinearOperator symmetric_operator(SparseMatrix a) {
+  const Eigen::VectorXd centres = a.diagonal();
+  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
+  const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
+  LinearOperator op{matrix->rows(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+  if (op.size < many_unknowns) {
+    op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; };
+  } else {  // row by row, which reads `out` but once
+    op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+      out.noalias() = matrix->transpose() * in;
+    };
+  }
+  return op;
+}
 
 // With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
 LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
@@ -191,44 +222,31 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
 }
 
 void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, StiffestMode& mode) {
-  if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return;
-  mode.indefinite = !is_semidefinite(s.stiffness, s.mass);
-  if (!mode.indefinite) return;
-  mode.lowest = mode.smallest;
-  if (mode.lowest) return;
-  const LinearOperator k = scaled_stiffness(s);
-  const LinearOperator negative{k.size,
-                                [&k](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-                                  k.apply(in, out);
-                                  out = -out;
-                                },
-                                -k.highest, -k.lowest};
-  constexpr int patience = 300;  // restarts: a soft end among many is not worth more
-  ArpackOptions few = options;
-  few.max_restarts = std::min(few.max_restarts, patience);
-  const SymmetricEigenpairs pairs = largest_eigenpair(negative, few);
-  mode.products += pairs.products;
-  if (pairs.converged) mode.lowest = -pairs.values[0];
+  if (!mode.converged || !s.symmetric) return;
+  DefinitenessProof proof({s.stiffness, s.mass, {}});
+  find_lowest(s, options, proof, mode);
 }
 
-StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
+StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options, double loss) {
   StiffestMode mode = estimated_stiffest_mode(s, options);
   if (is_diagonal(s.mass)) {
     const SparseMatrix matrix = scaled(s.stiffness, inverse_root(s.mass));
     mode.gershgorin = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
     mode.upper_bound = mode.gershgorin;
   }
-  if (!mode.converged || !s.symmetric || s.size() > DefinitenessProof::factorization_limit) return mode;
+  if (!mode.converged || !s.symmetric) return mode;
 
-  find_lowest(s, options, mode);
+  DefinitenessProof proof({s.stiffness, s.mass, {}}, loss);
+  find_lowest(s, options, proof, mode);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;
   double gap = std::max(mode.residual, 1e-10 * scale);
-  DefinitenessProof proof({s.stiffness, s.mass, {}});
-  while (mode.value + gap < mode.upper_bound && !proof.holds(mode.value + gap, 0, 1)) gap *= 8;
+  if (!proof.factorizes()) gap = std::max(gap, loss * scale);
+  while (mode.value + gap < mode.upper_bound && !proof.holds(mode.value + gap, 0, 1))
+    gap *= proof.pieces() > 0 ? 2 : 8;
   if (mode.value + gap < mode.upper_bound) {
     mode.upper_bound = mode.value + gap;
-    mode.bound_kind = BoundKind::inertia;
+    mode.bound_kind = proof.pieces() > 0 ? BoundKind::pieces : BoundKind::inertia;
   }
   return mode;
 }

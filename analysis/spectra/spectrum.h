@@ -19,6 +19,7 @@ namespace springstab {
 /// Where an upper bound on k0 comes from.
 enum class BoundKind {
   inertia,     // a Cholesky factorization of σI - S minus a shift for its rounding exists, so k0 < σ
+  pieces,      // likewise, of pieces that overlap (analysis/proofs/pieces.h)
   gershgorin,  // the largest absolute row sum of S
 };
 
@@ -42,6 +43,9 @@ inline constexpr Eigen::Index dense_limit = 150;
 /// M^(-1/2) A M^(-1/2), or L⁻¹AL⁻ᵀ with M = LLᵀ, as an operator, which may refer to `a`.
 LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass);
 
+/// A symmetric matrix as an operator, its eigenvalues bounded by Gershgorin's discs.
+LinearOperator symmetric_operator(SparseMatrix a);
+
 /// S as an operator, which may refer to `s`.
 LinearOperator scaled_stiffness(const StructuralMatrices& s);
 
@@ -52,14 +56,16 @@ Eigen::MatrixXd as_dense(const LinearOperator& a);
 Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a);
 
 /// k0 of `s`, densely up to 150 unknowns, else by ARPACK. Where K is not symmetric it is the largest |λ|,
-/// bounded by Gershgorin alone, and `smallest`, found up to 400 unknowns, the least real part. Above 150 000
-/// unknowns nothing is factorized: the bound is Gershgorin's and definiteness is not tested.
-StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
+/// bounded by Gershgorin alone, and `smallest`, found up to 400 unknowns, the least real part. What is too
+/// large to be factorized at once (SparseCholesky) is bounded by pieces, which lose about `loss` of k0,
+/// without CHOLMOD by Gershgorin alone, and its definiteness is not tested.
+StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {},
+                           double loss = 2e-3);
 
 /// The same without a proof, which costs more than k0 itself: the bound is ∞, definiteness is not tested.
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options = {});
 
-/// Tests definiteness, of a symmetric K up to 150 000 unknowns: sets `indefinite` and `lowest`.
+/// Tests definiteness, of a symmetric K that can be factorized at once: sets `indefinite` and `lowest`.
 void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, StiffestMode& mode);
 
 /// Whether a Cholesky factorization proves that every eigenvalue of K' is below sigma.

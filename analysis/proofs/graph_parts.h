@@ -1,0 +1,27 @@
+// The graph of a symmetric matrix, and METIS's answers about it: an order of elimination by nested
+// dissection, and a division into parts. Three unknowns in a row are one node where the size allows: they are
+// a particle.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+namespace springstab {
+
+struct Graph {
+  int unknowns_a_node = 1;
+  std::vector<int> start{0}, neighbour;  // of each node, ascending, without itself
+
+  int size() const { return static_cast<int>(start.size()) - 1; }
+};
+
+/// Both triangles are stored, zeros included.
+Graph graph_of(const Eigen::SparseMatrix<double>& a);
+
+/// Old numbers of the unknowns, in the order of elimination; empty where memory ran out.
+std::vector<long> dissection_order(const Eigen::SparseMatrix<double>& a);
+
+/// The part of each node, of `parts` about equal ones.
+std::vector<int> parts_of(const Graph& graph, int parts);
+
+}  // namespace springstab

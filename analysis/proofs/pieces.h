@@ -1,0 +1,39 @@
+// A proof of definiteness by pieces that overlap, each a small factorization, for matrices too large to be
+// factorized at once. With weights χ_p of particles, Σ_p χ_p² = 1, and g_ij = Σ_p χ_p(i) χ_p(j),
+//     Q = Σ_p χ_p Q χ_p + E,   E_ij = (1 - g_ij) Q_ij,
+// exactly; E lives where pieces overlap and is of second order in an edge's length over the overlap's. As
+// diag(e) + E is positive semidefinite for e_i >= Σ_j |E_ij|, Q is positive definite if every Q - diag(e) on
+// the particles of a piece is. Memory beside the matrix is that of one piece, and the work grows with n.
+#pragma once
+
+#include <memory>
+
+#include "analysis/proofs/graph_parts.h"
+#include "solvers/linear/structural_matrices.h"
+
+namespace springstab {
+
+class Pieces {
+ public:
+  /// Of the graph of a symmetric matrix, both triangles stored: parts of about `particles` nodes, and
+  /// `layers` of neighbours around each.
+  Pieces(const SparseMatrix& pattern, int particles, int layers);
+
+  int count() const { return static_cast<int>(nodes_.size()); }
+  /// Whether `q`, of that graph, is proved to be positive definite, rounding included.
+  bool prove(const SparseMatrix& q) const;
+
+ private:
+  struct Weight {
+    int piece;
+    double value;  // χ_piece of the node
+  };
+  double shared(int i, int j) const;  // g_ij
+  Eigen::VectorXd off_pieces(const SparseMatrix& q) const;
+
+  int unknowns_a_node_;
+  std::vector<std::vector<int>> nodes_;       // of each piece, ascending
+  std::vector<std::vector<Weight>> weights_;  // of each node, by pieces
+};
+
+}  // namespace springstab

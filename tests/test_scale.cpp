@@ -1,0 +1,244 @@
+// Many unknowns: proofs at their edge by blocks and by pieces, and k0 to few digits.
+#include <boost/test/unit_test.hpp>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "analysis/constants.h"
+#include "analysis/proofs/definiteness.h"
+#include "analysis/spectra/lanczos.h"
+#include "analysis/spectra/spectrum.h"
+#include "analysis/structure_limits.h"
+#ifdef SPRINGSTAB_CHOLMOD
+#include "analysis/proofs/pieces.h"
+#endif
+
+BOOST_AUTO_TEST_SUITE(scale)
+
+using namespace springstab;
+
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+// N x N masses with springs of stiffness k between neighbours and to a fixed rim.
+SparseMatrix membrane(int n, double k = 1) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto couple = [&](int i, int j) {
+    entries.emplace_back(i, j, -k);
+    entries.emplace_back(j, i, -k);
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      entries.emplace_back(i * n + j, i * n + j, 4 * k);
+      if (i + 1 < n) couple(i * n + j, (i + 1) * n + j);
+      if (j + 1 < n) couple(i * n + j, i * n + j + 1);
+    }
+  SparseMatrix a(n * n, n * n);
+  a.setFromTriplets(entries.begin(), entries.end());
+  return a;
+}
+
+// 4 sin²(jπ/(2(n+1))) of fixed-fixed chains, added up.
+double membrane_k0(int n) {
+  const double s = std::sin(n * std::numbers::pi / (2 * (n + 1)));
+  return 8 * s * s;
+}
+
+double membrane_k_min(int n) {
+  const double s = std::sin(std::numbers::pi / (2 * (n + 1)));
+  return 8 * s * s;
+}
+
+SparseMatrix shifted(const SparseMatrix& a, double sigma) {
+  SparseMatrix unit(a.rows(), a.cols());
+  unit.setIdentity();
+  return sigma * unit - a;
+}
+
+// Just below and just above what is factorized by blocks.
+std::vector<int> around_the_crossover() {
+  const int root = static_cast<int>(std::sqrt(static_cast<double>(many_unknowns)));
+  return {root, root + 1, root + 2, root + 3};
+}
+
+}  // namespace
+
+BOOST_AUTO_TEST_CASE(a_proof_holds_down_to_its_resolution_and_never_below_the_truth) {
+  for (const int n : around_the_crossover()) BOOST_TEST_CONTEXT(n << " x " << n) {
+      const double k0 = membrane_k0(n);
+      for (const double scale : {1.0, 1e-200, 1e200}) {
+        DefinitenessProof proof(prepare(membrane(n, scale)));
+        for (const double below : {0.0, eps, 1e-14, 1e-12, 1e-9, 1e-3, 0.5})
+          BOOST_TEST(!proof.holds(scale * k0 * (1 - below), 0, 1), "below by " << below << ", " << scale);
+        for (const double above : {1e-8, 1e-6, 1e-2, 1.0})
+          BOOST_TEST(proof.holds(scale * k0 * (1 + above), 0, 1), "above by " << above << ", " << scale);
+        for (const double sigma : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
+          BOOST_TEST(!proof.holds(sigma, 0, 1));
+      }
+    }
+}
+
+// Its smallest eigenvalue is what stiffness has left: -1e-13 of the largest is not positive.
+BOOST_AUTO_TEST_CASE(a_matrix_just_indefinite_is_never_called_positive_definite) {
+  for (const int n : around_the_crossover()) {
+    const SparseMatrix a = membrane(n);
+    const double k_min = membrane_k_min(n);
+    for (const double part : {1.0, 1 + 1e-13, 1 + 1e-9, 1 + 1e-6, 2.0}) {
+      DefinitenessProof proof(prepare(shifted(SparseMatrix(-a), -part * k_min)));  // A - part k_min
+      BOOST_TEST(!proof.holds(0, 0, -1), n << ": " << part);
+    }
+    DefinitenessProof proof(prepare(shifted(SparseMatrix(-a), -(1 - 1e-3) * k_min)));
+    BOOST_TEST(proof.holds(0, 0, -1));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(the_shift_covers_what_rounding_could_do) {
+  for (const int n : around_the_crossover()) {
+    const SparseMatrix a = membrane(n);
+    SparseCholesky cholesky;
+    BOOST_TEST(cholesky.analyze(a));
+    BOOST_TEST(cholesky.error() >= unit_roundoff * cholesky.entries());
+    BOOST_TEST(cholesky.entries() >= static_cast<double>(a.rows() + a.nonZeros()) / 2);
+    BOOST_TEST(cholesky.error() < 1e-8);
+    BOOST_TEST(cholesky.factorize(a));
+  }
+}
+
+BOOST_AUTO_TEST_CASE(what_is_not_finite_has_no_factorization) {
+  for (const int n : around_the_crossover()) {
+    const SparseMatrix good = membrane(n);
+    SparseCholesky cholesky;
+    BOOST_TEST(cholesky.factorize(good));
+    const Eigen::Index middle = good.rows() / 2 + 1;
+    for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity(), -4.0, 0.0}) {
+      SparseMatrix bad = good;
+      bad.coeffRef(middle, middle) = wrong;
+      BOOST_TEST(!cholesky.factorize(bad), n << ": " << wrong);
+    }
+    SparseMatrix overflows = good;  // a tiny pivot: its column of L is infinite
+    overflows.coeffRef(middle, middle) = 1e-300;
+    overflows.coeffRef(middle, middle - 1) = overflows.coeffRef(middle - 1, middle) = 1e300;
+    BOOST_TEST(!cholesky.factorize(overflows));
+    BOOST_TEST(cholesky.factorize(good));  // and goes on as before
+  }
+}
+
+BOOST_AUTO_TEST_CASE(few_digits_of_k0_are_right_to_them_and_never_above) {
+  for (const int n : {60, 142}) {
+    const StructuralMatrices s = prepare(membrane(n));
+    const LinearOperator op = scaled_stiffness(s);
+    const double k0 = membrane_k0(n);
+    for (const double tolerance : {1e-2, 1e-3, 5e-4, 1e-5}) BOOST_TEST_CONTEXT(n << ", " << tolerance) {
+        const SymmetricEigenpairs found = largest_by_lanczos(op, {.tolerance = tolerance}, true);
+        BOOST_REQUIRE(found.converged);
+        const double value = found.values[0];
+        BOOST_TEST(value <= k0 * (1 + 1e-13));
+        BOOST_TEST(value >= k0 * (1 - tolerance / 2));
+        Eigen::VectorXd image;
+        op.apply(found.vectors.col(0), image);
+        const double residual = (image - value * found.vectors.col(0)).norm();
+        BOOST_TEST(residual <= 1.01 * tolerance * value);
+        BOOST_TEST(residual >= 0.9 * found.residuals[0]);
+        const SymmetricEigenpairs value_alone = largest_by_lanczos(op, {.tolerance = tolerance}, false);
+        BOOST_TEST(value_alone.values[0] == value);
+        BOOST_TEST(2 * value_alone.products == found.products + 1);
+      }
+  }
+  BOOST_CHECK_THROW(
+      largest_by_lanczos(
+          {4, [](const auto&, Eigen::VectorXd& out) { out = Eigen::VectorXd::Constant(4, std::nan("")); }},
+          {.tolerance = 1e-3}, false),
+      std::invalid_argument);
+  const LinearOperator zero{4, [](const auto&, Eigen::VectorXd& out) { out = Eigen::VectorXd::Zero(4); }};
+  const SymmetricEigenpairs nothing = largest_by_lanczos(zero, {.tolerance = 1e-3}, true);
+  BOOST_TEST(nothing.converged);
+  BOOST_TEST(nothing.values[0] == 0);
+}
+
+BOOST_AUTO_TEST_CASE(limits_by_both_searches_and_both_factorizations_agree) {
+  for (const int n : around_the_crossover()) BOOST_TEST_CONTEXT(n << " x " << n) {
+      const double h = 2 / std::sqrt(membrane_k0(n));
+      for (const int digits : {3, 4, 6, 9}) {
+        StructureLimits answer(structure_of(prepare(membrane(n))), {.digits = digits});
+        BOOST_TEST(answer.digits().value() == digits);
+        // A membrane's row sums, 8, are nearer to k0 than few digits are.
+        BOOST_TEST((answer.k0().bound_kind == BoundKind::inertia) == (digits >= 6));
+        BOOST_TEST(!answer.k0().indefinite);
+        const MethodLimits& limits = answer.limits("symplectic-euler");
+        const double error = std::pow(10, -digits);
+        BOOST_TEST(limits.h_max.value() >= h * (1 - 1e-13));
+        BOOST_TEST(limits.h_max.value() <= h * (1 + error));
+        BOOST_TEST(limits.h_certified.value() < h);
+        BOOST_TEST(limits.h_certified.value() >= h * (1 - 2.5 * error));  // half the residual
+      }
+      StructureLimits usual(structure_of(prepare(membrane(n))));
+      BOOST_TEST(usual.digits().has_value() == (n * n >= many_unknowns));
+    }
+}
+
+#ifdef SPRINGSTAB_CHOLMOD
+// Stiffnesses that differ tenfold, and three unknowns a particle.
+SparseMatrix uneven_net(int n) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> stiffness(1, 10);
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto spring = [&](int i, int j, Eigen::Vector3d along) {
+    const Eigen::Matrix3d k = stiffness(random) * along.normalized() * along.normalized().transpose();
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        entries.emplace_back(3 * i + r, 3 * i + c, k(r, c));
+        entries.emplace_back(3 * j + r, 3 * j + c, k(r, c));
+        entries.emplace_back(3 * i + r, 3 * j + c, -k(r, c));
+        entries.emplace_back(3 * j + r, 3 * i + c, -k(r, c));
+      }
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      if (i + 1 < n) spring(i * n + j, (i + 1) * n + j, {0.1, 0.2, 1});
+      if (j + 1 < n) spring(i * n + j, i * n + j + 1, {1, -0.1, 0.2});
+      if (i + 1 < n && j + 1 < n) spring(i * n + j, (i + 1) * n + j + 1, {1, 0.4, 1});
+    }
+  SparseMatrix a(3 * n * n, 3 * n * n);
+  a.setFromTriplets(entries.begin(), entries.end());
+  return a;
+}
+
+BOOST_AUTO_TEST_CASE(pieces_prove_what_is_true_with_a_loss_that_overlap_makes_small) {
+  const int n = 200;
+  const double k0 = membrane_k0(n);
+  const SparseMatrix even = membrane(n), uneven = uneven_net(100);
+  const StiffestMode uneven_k0 = stiffest_mode(prepare(uneven), {.tolerance = 1e-8});
+  BOOST_REQUIRE((uneven_k0.bound_kind == BoundKind::inertia));
+  struct Case {
+    const SparseMatrix& a;
+    double k0, loss_of_8;  // of a bound with 8 layers
+  };
+  for (const Case& c : {Case{even, k0, 0.01}, {uneven, uneven_k0.value, 0.02}})
+    for (const int layers : {4, 8, 16})
+      BOOST_TEST_CONTEXT(c.a.rows() << " unknowns, " << layers << " layers") {
+        const Pieces pieces(c.a, 2500, layers);
+        BOOST_TEST(pieces.count() >= 4);
+        for (const double below : {0.0, eps, 1e-12, 1e-6, 1e-2})
+          BOOST_TEST(!pieces.prove(shifted(c.a, c.k0 * (1 - below))), "below by " << below);
+        const double loss = c.loss_of_8 * 64 / (layers * layers);
+        BOOST_TEST(pieces.prove(shifted(c.a, c.k0 * (1 + loss))));
+      }
+  BOOST_TEST(!Pieces(even, 2500, 4).prove(SparseMatrix(-even)));
+  SparseMatrix bad = shifted(even, 2 * k0);
+  bad.coeffRef(5, 5) = std::nan("");
+  BOOST_TEST(!Pieces(even, 2500, 4).prove(bad));
+}
+
+BOOST_AUTO_TEST_CASE(one_piece_loses_nothing) {
+  const SparseMatrix a = membrane(50);
+  const Pieces one(a, 2500, 8);
+  BOOST_TEST(one.count() == 1);
+  BOOST_TEST(one.prove(shifted(a, membrane_k0(50) * (1 + 1e-9))));
+  BOOST_TEST(!one.prove(shifted(a, membrane_k0(50))));
+}
+#endif
+
+BOOST_AUTO_TEST_SUITE_END()

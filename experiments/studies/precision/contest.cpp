@@ -181,7 +181,11 @@ std::vector<Contestant> method_contestants(Problem& problem, const std::vector<M
     const std::optional<double> limit = problem.limit(each.name());
     const std::string method(each.name());
     const bool iterates = each.info().implicit && problem.scene();
-    for (double tolerance : iterates ? std::vector{1e-2, 1e-4, 1e-8} : std::vector{0.}) {
+    const bool precise = each.info().order > 1;  // a loose solve would hide it
+    const std::vector<double> tolerances = !iterates ? std::vector{0.}
+                                           : precise ? std::vector{1e-6}
+                                                     : std::vector{1e-2, 1e-4, 1e-8};
+    for (double tolerance : tolerances) {
       const std::string title(each.info().title);
       contestants.push_back({.name = iterates ? title + text(" (CG %g)", tolerance) : title,
                              .limit = limit,

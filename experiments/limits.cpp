@@ -107,7 +107,7 @@ void print(StructureLimits& answer, const std::string& size, double safety) {
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
   std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   if (const auto digits = answer.digits(); digits && k0.value > 0)
-    std::cout << text("searched for %d digits of h: by the residual it is wrong by %.1g of itself at most\n",
+    std::cout << text("searched for %d digits of h: the residual is worth %.1g of it, no bound\n",
                       *digits, k0.residual / k0.value / 2);
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
   if (k0.indefinite) {

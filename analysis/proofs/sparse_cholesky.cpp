@@ -28,7 +28,7 @@ struct SparseCholesky::Engine {
     double entries() const { return static_cast<double>(m_matrix.nonZeros()); }
     bool factorize(const SparseMatrix& a) {
       SimplicialLLT::factorize(a);
-      return info() == Eigen::Success;
+      return info() == Eigen::Success && m_matrix.coeffs().allFinite();  // NaN passes for a pivot
     }
   };
 #ifdef SPRINGSTAB_CHOLMOD

@@ -289,14 +289,14 @@ BOOST_AUTO_TEST_CASE(the_last_steps_of_a_run_that_diverges_are_kept_if_wanted) {
 }
 
 BOOST_AUTO_TEST_CASE(progress_is_shown_on_a_terminal_and_erased_before_the_result) {
-  const std::string limits = on_terminal(folder(), {"limits", "--grid", "90x90", "--pin", "first-row"});
+  const std::string limits = on_terminal(folder(), {"limits", "--grid", "300x300", "--pin", "first-row"});
   BOOST_TEST(has(limits, "\r\033[Klimits: "));
-  BOOST_TEST(left_on(limits).starts_with("24030 unknowns"), left_on(limits).substr(0, 80));
+  BOOST_TEST(left_on(limits).starts_with("269100 unknowns"), left_on(limits).substr(0, 80));
   const std::string run = on_terminal(folder(), {"simulate", "--grid", "32x32", "--pin", "first-row",
                                                  "--method", "symplectic-euler", "--duration", "30"});
   BOOST_TEST(has(run, "\rsimulating ["));
   BOOST_TEST(left_on(run).starts_with("symplectic-euler, "), left_on(run).substr(0, 80));
-  BOOST_TEST(!has((*this)("limits --grid 90x90 --pin first-row").err, "limits:"));
+  BOOST_TEST(!has((*this)("limits --grid 300x300 --pin first-row").err, "limits:"));
 }
 
 // √k0 [1/s] of 16 x 16 particles of 1.25e-4 kg, 2.5 cm apart: with one direction of

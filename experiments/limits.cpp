@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "analysis/structure_limits.h"
+#include "experiments/cheapest_report.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
+#include "solvers/cpu_time.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -202,6 +204,7 @@ void check(const LimitsOptions& options) {
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
   if (!options.method.empty() && !options.methods.empty())
     throw InputError("--method, --methods", 0, "are both given, expected one of them");
+  check_cheapest(options);
 }
 
 Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
@@ -270,12 +273,14 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   check(options);
+  const double begin = cpu_seconds();
   const std::vector<Method> methods =
       options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
   Subject subject(options.input, true);
   print_mesh_notes(subject);
   print_size_warning(subject);
-  Structure structure = subject.structure(subject.initial_state(common.seed));
+  const State<Vector> start = subject.initial_state(common.seed);
+  Structure structure = subject.structure(start);
   structure.every_pose = subject.every_pose();
   StructureLimits answer(std::move(structure),
                          {.safety = options.safety, .seed = common.seed, .max_step = options.max_step});
@@ -291,11 +296,19 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
+  waiting->now("the cheapest method");
+  const CheapestOptions asked = cheapest_options(options, cpu_seconds() - begin);
+  const CheapestMethod cheapest(answer, subject, start, methods, asked);
   waiting.reset();
   if (common.json) {
-    print_json(report(answer, rows, options.safety, subject));
+    Json json = report(answer, rows, options.safety, subject);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      add_steps(json["methods"][i], cheapest, methods[i], rows[i].limits, asked);
+    json["cheapest"] = cheapest_json(cheapest, asked);
+    print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
+    if (answer.k0().converged) print_cheapest(cheapest, answer, methods, asked);
   }
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "analysis/structure_limits.h"
+#include "experiments/cheapest_report.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
 #include "experiments/limits_words.h"
+#include "solvers/cpu_time.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -107,8 +109,8 @@ void print(StructureLimits& answer, const std::string& size, double safety) {
   std::cout << text("\nk0 = %.10g 1/s² (%s, residual %.1g)", k0.value, value_kind(k0), k0.residual);
   std::cout << (k0.value < 0 || !s.symmetric ? "\n" : text(", 2/√k0 = %.6g s\n", 2 / std::sqrt(k0.value)));
   if (const auto digits = answer.digits(); digits && k0.value > 0)
-    std::cout << text("searched for %d digits of h: the residual is worth %.1g of it, no bound\n",
-                      *digits, k0.residual / k0.value / 2);
+    std::cout << text("searched for %d digits of h: the residual is worth %.1g of it, no bound\n", *digits,
+                      k0.residual / k0.value / 2);
   std::cout << "proved: k0 is " << bounds(k0) << '\n';
   if (k0.indefinite) {
     const double rate = answer.growth().value_or(0);
@@ -180,6 +182,7 @@ void check(const CommonOptions& common, const LimitsOptions& options) {
     throw InputError("--max-step", 0, text("is %g, expected a positive number of seconds", options.max_step));
   if (!options.method.empty() && !options.methods.empty())
     throw InputError("--method, --methods", 0, "are both given, expected one of them");
+  check_cheapest(options);
 }
 
 Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
@@ -249,12 +252,14 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   check(common, options);
+  const double begin = cpu_seconds();
   const std::vector<Method> methods =
       options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
   Subject subject(options.input, true);
   print_mesh_notes(subject);
   print_size_warning(subject);
-  Structure structure = subject.structure(subject.initial_state(common.seed));
+  const State<Vector> start = subject.initial_state(common.seed);
+  Structure structure = subject.structure(start);
   structure.every_pose = subject.every_pose();
   StructureLimits answer(std::move(structure), {.safety = options.safety,
                                                 .seed = common.seed,
@@ -273,11 +278,19 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
+  waiting->now("the cheapest method");
+  const CheapestOptions asked = cheapest_options(options, cpu_seconds() - begin);
+  const CheapestMethod cheapest(answer, subject, start, methods, asked);
   waiting.reset();
   if (common.json) {
-    print_json(report(answer, rows, options.safety, subject));
+    Json json = report(answer, rows, options.safety, subject);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      add_steps(json["methods"][i], cheapest, methods[i], rows[i].limits, asked);
+    json["cheapest"] = cheapest_json(cheapest, asked);
+    print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
+    if (answer.k0().converged) print_cheapest(cheapest, answer, methods, asked);
   }
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))

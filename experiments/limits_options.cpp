@@ -33,7 +33,15 @@ Subcommand limits_command() {
           "tetrahedra (.msh, .veg, .vtk); its texture_map, by which factor the cloth differs from it at "
           "most.\n"
           "extent [m], total_mass [kg] and springs are those of the scene at rest.\n"
-          "" +
+          "cheapest is the method that costs least CPU time a simulated second at its own step, measured "
+          "over a "
+          "few steps here and now:\n"
+          "stable only, or with --error at the step at which the linear system's own modes are predicted to "
+          "be off by E, in the mean over\n"
+          "the slowest period (1 s where nothing comes back), of which JSON gives each method's error_step "
+          "and "
+          "predicted_error;\n"
+          "with --frame-rate, substeps and frame_step [s].\n" +
           std::string(leapfrog_words) +
           "\n"
           "Exit status 3: the --method asked for has no stable step.\n\n"
@@ -55,7 +63,11 @@ Subcommand limits_command() {
                   "part of h that a proof by pieces of a large system may lose")
                .with_default()
                .shown_as("X"),
-           Option("--certify", &o->certify, "exit 3 unless every method asked for has a certified step")}),
+           Option("--certify", &o->certify, "exit 3 unless every method asked for has a certified step"),
+           Option("--error", &o->error, "that the cheapest method is to reach, relative to what moves: 0.01")
+               .shown_as("E"),
+           Option("--frame-rate", &o->frame_rate, "also say how many steps make a frame of 1/FPS seconds")
+               .shown_as("FPS")}),
       .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};
 }
 

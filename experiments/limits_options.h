@@ -1,6 +1,7 @@
 // What `springstab limits` is asked.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "experiments/command/options.h"
@@ -15,8 +16,10 @@ struct LimitsOptions {
   double safety = 1.5;
   double max_step = 0.01;  // [s], where nothing limits the step
   bool certify = false;
-  double certify_loss = 1e-3;  // of h
-  int digits = 0;              // of h; 0: all, or 4 of many unknowns
+  double certify_loss = 1e-3;          // of h
+  int digits = 0;                      // of h; 0: all, or 4 of many unknowns
+  std::optional<double> error{};       // that the cheapest method is to reach
+  std::optional<double> frame_rate{};  // [1/s]
 };
 
 /// Stable steps and damping of a structure; returns an ExitStatus.

@@ -15,6 +15,7 @@
 #include "experiments/runs/step_run.h"
 #include "experiments/simulate_notes.h"
 #include "experiments/simulate_report.h"
+#include "experiments/simulate_to_error.h"
 #include "solvers/io/input_error.h"
 #include "solvers/simulation.h"
 
@@ -24,12 +25,13 @@ namespace {
 constexpr int most_frames = 10'000'000;
 constexpr int most_newton_steps = 100;
 
-void check(const SimulateOptions& options) {
+void check(const CommonOptions& common, const SimulateOptions& options) {
   const auto positive = [](const char* option, double value, const char* unit) {
     if (!(value > 0 && std::isfinite(value)))
       throw InputError(option, 0, text("is %g, expected a positive number%s", value, unit));
   };
   positive("--duration", options.duration, " of seconds");
+  check_error_options(options, common);
   if (options.step) positive("--step", *options.step, " of seconds");
   if (options.max_step) positive("--max-step", *options.max_step, " of seconds");
   positive("--relinearize", options.relinearize, " of seconds");
@@ -73,9 +75,12 @@ std::string saved(const Recorder& recorder, const CheckpointFile& checkpoint,
                   const SimulateOptions& options) {
   if (options.output.empty()) return "nothing was saved (with --output it would have been)";
   if (checkpoint.saved_until() == 0) return "nothing was saved yet to go on from";
-  return text(
-      "%d frames and the run up to t = %.6g s are saved in %s; the same command goes on there with --resume",
-      recorder.written(), checkpoint.saved_until(), options.output.c_str());
+  const std::string same =
+      options.error ? text("the same command with --method %s --max-step %.17g in place of --error",
+                           options.method.c_str(), options.max_step.value_or(0))
+                    : "the same command";
+  return text("%d frames and the run up to t = %.6g s are saved in %s; %s goes on there with --resume",
+              recorder.written(), checkpoint.saved_until(), options.output.c_str(), same.c_str());
 }
 
 // The model as the options want it.
@@ -100,12 +105,11 @@ void prepare_solver(Subject& subject, const SimulateOptions& options) {
                        .tolerance = options.cg_tolerance};
 }
 
-int say_no_plan(const StepChooser& chooser, bool json) {
+int say_no_plan(const std::string& method, const std::string& why, bool json) {
   if (json) {
-    print_json(
-        Json{{"method", chooser.method().name()}, {"step", nullptr}, {"status", reason_text(chooser)}});
+    print_json(Json{{"method", method.empty() ? Json() : Json(method)}, {"step", nullptr}, {"status", why}});
   } else {
-    std::cout << reason_text(chooser) << '\n';
+    std::cout << why << '\n';
   }
   return no_answer;
 }
@@ -113,7 +117,7 @@ int say_no_plan(const StepChooser& chooser, bool json) {
 // Runs from the start or from where a run was left.
 Course run(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
            StepChooser& chooser, const StepPlan& plan, const State<Vector>& start, CheckpointFile& checkpoint,
-           const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder) {
+           const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder, ErrorRun* error) {
   Course course{
       .result = {}, .start = start, .end = {}, .watch = chooser.watch(start), .counts = {}, .step = plan.h};
   KeptRun begin = checkpoint.read().value_or(KeptRun{start_of(plan), start, {}});
@@ -133,6 +137,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
       counted, *stepper, std::move(begin.run), course.watch, course.end,
       [&](const RunSoFar& so_far, const State<Vector>& s) {
         recorder->record(so_far.time, s);
+        if (error) error->see(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
           checkpoint.save([&]() -> KeptRun {
             return {so_far,
@@ -152,11 +157,14 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   return course;
 }
 
-int run_subject(const CommonOptions& common, const SimulateOptions& options, Subject& subject) {
-  prepare(subject, options);
+constexpr int again = -1;  // no exit status
+
+// `error` is null unless an error is to be reached; `again` where the run is to be made once more for it.
+int run_subject(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
+                ErrorRun* error) {
   StepChooser chooser(subject, step_options(common, options));
   const std::optional<StepPlan> plan = chooser.first_plan();
-  if (!plan) return say_no_plan(chooser, common.json);
+  if (!plan) return say_no_plan(options.method, reason_text(chooser), common.json);
   prepare_solver(subject, options);
   print_unused_options(common, options, !subject.scene());
   const State<Vector> start = subject.initial_state(common.seed);
@@ -167,7 +175,13 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   CheckpointFile checkpoint(options.output, identity(common, options), options.earlier, common.quiet);
   std::optional<Recorder> recorder;
   const StopOnInterrupt interrupt;
-  const Course course = run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder);
+  const Course course =
+      run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder, error);
+  if (error && course.result.status == StepStatus::done && !course.stopped &&
+      error->is_to_repeat(start, chooser.decisions().h)) {
+    checkpoint.finish();
+    return again;
+  }
   if (course.diverged() && options.keep_diverged) {
     checkpoint.finish();  // frames get other numbers: nothing can go on from it
     recorder->record_last();
@@ -178,12 +192,14 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
     Json report = json_of(course, options, subject, chooser, recorder->written());
     if (options.keep_diverged) report["diverged_frames"] = recorder->last_steps();
     if (options.explain) report["explanation"] = explanation;
+    if (error) report["error"] = error->json();
     print_json(report);
   } else {
     print_report(course, options, subject, chooser, recorder->written());
     if (recorder->last_steps() > 0)
       std::cout << text("the last %d of them are single steps, up to the divergence\n",
                         recorder->last_steps());
+    if (error) std::cout << error->text_of();
   }
   if (course.stopped) {
     std::cerr << "springstab: interrupted; " << saved(*recorder, checkpoint, options) << '\n';
@@ -194,18 +210,31 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   if (const std::string earlier = recorder->earlier(); !earlier.empty())
     std::cerr << "springstab: note: " << earlier
               << ": this frame, and those after it, are of an earlier run\n";
-  return course.diverged() ? run_diverged : course.result.status == StepStatus::done ? done : no_answer;
+  if (course.diverged()) return run_diverged;
+  return course.result.status == StepStatus::done && !(error && error->missed()) ? done : no_answer;
+}
+
+int run_to_error(const CommonOptions& common, const SimulateOptions& options, Subject& subject) {
+  prepare_solver(subject, options);
+  ErrorRun error(common, options, subject);
+  if (!error.no_choice().empty()) return say_no_plan("", error.no_choice(), common.json);
+  const int status = run_subject(common, error.options(), subject, &error);
+  return status == again ? run_subject(common, error.options(), subject, &error) : status;
 }
 
 }  // namespace
 
 int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
-  check(options);
-  Method{options.method};
+  check(common, options);
+  if (!options.method.empty()) Method{options.method};
   Subject subject(options.input);
   print_mesh_notes(subject);
   print_size_warning(subject);
-  return naming_duration([&] { return run_subject(common, options, subject); });
+  prepare(subject, options);
+  return naming_duration([&] {
+    return options.error ? run_to_error(common, options, subject)
+                         : run_subject(common, options, subject, nullptr);
+  });
 }
 
 }  // namespace springstab

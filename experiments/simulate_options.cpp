@@ -29,6 +29,13 @@ Subcommand simulate_command() {
           "for "
           "the stiffness\n"
           "it has there; a linearized method then also linearizes twice as often.\n"
+          "With --error the cheapest method and step are those of `limits --error` over the duration. A "
+          "second "
+          "run at half the\n"
+          "step says how far the positions are off in the mean, and if that is more than E the run is made "
+          "once more with\n"
+          "shorter steps; JSON: error.estimated, error.status (reached, missed, unknown), error.reason. Exit "
+          "status 3 where it is missed.\n"
           "JSON: energy.gained is what kinetic, elastic and gravity's energy together have grown [J]; extent "
           "[m], total_mass [kg]\n"
           "and springs are those of the scene at rest; with --keep-diverged, diverged_frames of the last "
@@ -43,8 +50,15 @@ Subcommand simulate_command() {
           "         the same with --resume after Ctrl-C or a crash",
       .options = with_input(
           o->input,
-          {Option("--method", &o->method, "one of " + method_names() + "; needed without --method-file")
+          {Option("--method", &o->method,
+                  "one of " + method_names() + "; needed without --method-file, unless --error chooses it")
                .shown_as("NAME"),
+           Option(
+               "--error", &o->error,
+               "choose method and step for this error, relative to what moves, and estimate what was reached")
+               .shown_as("E"),
+           Option("--methods", &o->methods, "to choose from with --error: all, or names with commas")
+               .shown_as("all|LIST"),
            Option("--duration", &o->duration, "time to simulate").needed().shown_as("[s]"),
            Option("--step", &o->step, "step (default: the recommended one of `limits`)").shown_as("[s]"),
            Option("--max-step", &o->max_step, "largest step to choose (default 0.01 where nothing limits it)")
@@ -80,9 +94,10 @@ Subcommand simulate_command() {
                .with_default(),
            Option("--keep-diverged", &o->keep_diverged,
                   "of a run that diverges, also record every one of its last 32 steps before that"),
-           resume_option(o->earlier), overwrite_option(o->earlier)}),
+           resume_option(o->earlier),
+           overwrite_option(o->earlier)}),
       .run = [o](const CommonOptions& common) {
-        o->method = method_asked_for(o->method, "--method");
+        if (!o->error) o->method = method_asked_for(o->method, "--method");
         o->designed_damping = o->damping == "designed";
         o->projected_hessian = o->hessian == "projected";
         o->direct = o->solver == "direct";

@@ -11,7 +11,9 @@ namespace springstab {
 
 struct SimulateOptions {
   InputOptions input;
-  std::string method;
+  std::string method;              // empty where `error` chooses it
+  std::string methods;             // to choose from, see methods_option
+  std::optional<double> error;     // to be reached
   double duration = 0;             // [s]
   std::optional<double> step;      // [s]
   std::optional<double> max_step;  // [s]

@@ -33,28 +33,23 @@ long double quadratic_form(const SparseMatrix& a, const Eigen::MatrixXd::ColXpr&
   return sum;
 }
 
-struct Mode {
-  double q, v;
-};
+}  // namespace
 
-// q'' + d q' + λ q = 0 after time t.
-Mode advanced(Mode start, double lambda, double d, double t) {
-  const double half = d / 2, square = lambda - half * half;
+OscillatorState oscillator_motion(OscillatorState start, double k, double d, double t) {
+  const double half = d / 2, square = k - half * half;
   if (square > 0) {
     const double omega = std::sqrt(square), decay = std::exp(-half * t);
     const double c = std::cos(omega * t), s = std::sin(omega * t) / omega;
     return {decay * (start.q * c + (start.v + half * start.q) * s),
-            decay * (start.v * c - (lambda * start.q + half * start.v) * s)};
+            decay * (start.v * c - (k * start.q + half * start.v) * s)};
   }
   // e^(r t) with r = -half ± s, the slower one without cancellation; the faster one by its ratio to it.
-  const double s = std::sqrt(-square), slow = half + s > 0 ? -lambda / (half + s) : 0;
+  const double s = std::sqrt(-square), slow = half + s > 0 ? -k / (half + s) : 0;
   const double grown = std::exp(slow * t), mixed = start.v - slow * start.q;
   const double ratio = s > 0 ? -std::expm1(-2 * s * t) / (2 * s) : t;
   const double q = grown * (start.q + mixed * ratio);
   return {q, slow * q + grown * mixed * std::exp(-2 * s * t)};
 }
-
-}  // namespace
 
 LinearMotion::LinearMotion(const StructuralMatrices& s, double d0, double alpha, const State<Vector>& start,
                            std::uint64_t seed) {
@@ -77,8 +72,8 @@ LinearMotion::LinearMotion(const StructuralMatrices& s, double d0, double alpha,
 State<Vector> LinearMotion::at(double t) const {
   Vector q(modes_.cols()), v(modes_.cols());
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const Mode mode =
-        advanced({initial_place_[i], initial_velocity_[i]}, squared_frequency_[i], damping_[i], t);
+    const OscillatorState mode =
+        oscillator_motion({initial_place_[i], initial_velocity_[i]}, squared_frequency_[i], damping_[i], t);
     q[i] = mode.q;
     v[i] = mode.v;
   }

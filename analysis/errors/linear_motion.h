@@ -11,6 +11,14 @@
 
 namespace springstab {
 
+/// Where an oscillator is, and its velocity.
+struct OscillatorState {
+  double q, v;
+};
+
+/// Of q'' + d q' + k q = 0, t [s] after the start; k [1/s²] of either sign, and d [1/s] >= -2√k where k > 0.
+OscillatorState oscillator_motion(OscillatorState start, double k, double d, double t);
+
 /// M x'' = -K x - (d0 M + alpha K) v from a start: with K V = M V Λ, Vᵀ M V = 1 and x = V q,
 ///     q'' + (d0 + alpha λ) q' + λ q = 0.
 /// λ are Rayleigh quotients in extended precision, so that their error is that of V squared.

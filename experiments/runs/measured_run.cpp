@@ -1,6 +1,5 @@
 #include "experiments/runs/measured_run.h"
 
-#include <ctime>
 #include <fstream>
 
 #include "analysis/method.h"
@@ -18,12 +17,6 @@ std::string processor() {
 }
 
 }  // namespace
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 Json json_of(const Counts& counts) {
   return {{"force_evaluations", counts.force_evaluations},

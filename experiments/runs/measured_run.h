@@ -6,12 +6,10 @@
 
 #include "experiments/command/output.h"
 #include "solvers/counting.h"
+#include "solvers/cpu_time.h"
 #include "solvers/simulation.h"
 
 namespace springstab {
-
-/// CPU time of this process [s].
-double cpu_seconds();
 
 /// The counts by their names.
 Json json_of(const Counts& counts);

@@ -278,19 +278,25 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
-  waiting->now("the cheapest method");
+  // Measured, and not the same every time: no program gets it unasked.
   const CheapestOptions asked = cheapest_options(options, cpu_seconds() - begin);
-  const CheapestMethod cheapest(answer, subject, start, methods, asked);
+  std::optional<CheapestMethod> cheapest;
+  if (!common.json || options.error || options.frame_rate) {
+    waiting->now("the cheapest method");
+    cheapest.emplace(answer, subject, start, methods, asked);
+  }
   waiting.reset();
   if (common.json) {
     Json json = report(answer, rows, options.safety, subject);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      add_steps(json["methods"][i], cheapest, methods[i], rows[i].limits, asked);
-    json["cheapest"] = cheapest_json(cheapest, asked);
+    if (cheapest) {
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        add_steps(json["methods"][i], *cheapest, methods[i], rows[i].limits, asked);
+      json["cheapest"] = cheapest_json(*cheapest, asked);
+    }
     print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
-    if (answer.k0().converged) print_cheapest(cheapest, answer, methods, asked);
+    if (answer.k0().converged) print_cheapest(*cheapest, answer, methods, asked);
   }
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))

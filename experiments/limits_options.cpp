@@ -41,7 +41,8 @@ Subcommand limits_command() {
           "the slowest period (1 s where nothing comes back), of which JSON gives each method's error_step "
           "and "
           "predicted_error;\n"
-          "with --frame-rate, substeps and frame_step [s].\n" +
+          "with --frame-rate, substeps and frame_step [s]. JSON has cheapest where one of the two is "
+          "given.\n" +
           std::string(leapfrog_words) +
           "\n"
           "Exit status 3: the --method asked for has no stable step.\n\n"

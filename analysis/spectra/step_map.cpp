@@ -26,7 +26,7 @@ constexpr double outside = 1e-8;  // |λ| - 1 of what grows; differences are goo
 constexpr double sharp = 1e-5, differences = 1e-9, well_below = 1.3;
 // Times the largest rate of motion: steps from which accelerations are seen, and by which methods differ.
 constexpr double small_step = 1e-3, telling_step = 1;
-constexpr double farthest = 1e12;  // times the first step
+constexpr double longest = 1e12;  // times the first step
 
 double displacement(const Vector& x, double difference) {
   const double largest = x.lpNorm<Eigen::Infinity>();
@@ -134,9 +134,9 @@ Complexes predicted(const Method& method, const StructuralMatrices& s, const Com
 double farthest_from(const Complexes& points, const Complexes& others) {
   double farthest_one = 0;
   for (const Complex point : points) {
-    double nearest = infinity;
-    for (const Complex other : others) nearest = std::min(nearest, std::abs(point - other));
-    farthest_one = std::max(farthest_one, nearest);
+    double distance = infinity;
+    for (const Complex other : others) distance = std::min(distance, std::abs(point - other));
+    farthest_one = std::max(farthest_one, distance);
   }
   return farthest_one;
 }
@@ -166,7 +166,7 @@ LargestStep largest_stable_step(const StepMap& map, const Vector& x, const Vecto
     do {
       low = high;
       high *= 2;
-      if (high > farthest * options.first_step) {
+      if (high > longest * options.first_step) {
         found.h_max = infinity;
         return found;
       }
@@ -175,7 +175,7 @@ LargestStep largest_stable_step(const StepMap& map, const Vector& x, const Vecto
     do {
       high = low;
       low /= 2;
-      if (low < options.first_step / farthest) return found;
+      if (low < options.first_step / longest) return found;
     } while (!stable(low));
   }
   while (high - low > options.accuracy * high) {

@@ -31,6 +31,12 @@ struct Result {
   bool operator==(const Result&) const = default;
 };
 
+// The last line of `limits` compares times.
+std::string without_cheapest(std::string report) {
+  if (const auto at = report.find("\ncheapest"); at != std::string::npos) report.erase(at);
+  return report;
+}
+
 // The command with its files in the folder `out`.
 Result result_of(const Command& command, const std::string& arguments, const std::string& options = "") {
   const fs::path out = command.folder() / "out";
@@ -38,7 +44,7 @@ Result result_of(const Command& command, const std::string& arguments, const std
   fs::create_directories(out);
   const Outcome run = command(arguments + ' ' + options);
   const bool json = arguments.find("--json") != std::string::npos;
-  return {run.status, json ? untimed(Json::parse(run.out)).dump() : run.out, files_in(out)};
+  return {run.status, json ? untimed(Json::parse(run.out)).dump() : without_cheapest(run.out), files_in(out)};
 }
 
 // With one thread twice, with two, and with three, which divide no number of cells here.

@@ -97,8 +97,7 @@ std::optional<double> cpu_per_step(System& system, const Method& method, double 
 }
 
 CheapestMethod::CheapestMethod(StructureLimits& answer, Model& model, const State<Vector>& start,
-                               std::span<const Method> methods, const CheapestOptions& options)
-    : linear_(model.is_linear()) {
+                               std::span<const Method> methods, const CheapestOptions& options) {
   if (!answer.k0().converged) return;
   if (options.error && answer.structure().matrices.symmetric) {
     motion_ = motion_spectrum(model, start, answer.k0().value);
@@ -124,7 +123,7 @@ void CheapestMethod::choose_steps(StructureLimits& answer, std::span<const Metho
     if (method.info().implicit && !answer.structure().matrices.symmetric) continue;  // no such solver
     Candidate candidate{method, *largest, std::nullopt};
     if (options.error) {
-      if (!motion_ || (method.info().linearized && !linear_ && methods.size() > 1)) continue;
+      if (!motion_ || (method.info().linearized && methods.size() > 1)) continue;
       const auto found = step_for_error(method, *motion_, {duration_, *options.error}, *largest);
       if (!found) continue;
       candidate = {method, found->step, found->error, found->by_stability};

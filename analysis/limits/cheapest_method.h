@@ -62,8 +62,8 @@ class CheapestMethod {
   CheapestMethod(const CheapestMethod&) = delete;
 
   /// Those with a step, in the order of the methods. Where an error is asked for, a linearized method stands
-  /// for a scene only if it is the only method: the linear system does not show its error, that of forces
-  /// which stay frozen.
+  /// among them only if it is the only method: of a linear system it takes the steps of the method inside,
+  /// and a scene's has its error in forces that stay frozen, which the linear system does not show.
   const std::vector<Candidate>& candidates() const { return candidates_; }
   const Candidate* find(const Method& method) const;
   /// Of those whose steps succeed the two that cost least; null where there is none.
@@ -83,7 +83,6 @@ class CheapestMethod {
   std::vector<Candidate> candidates_;
   std::optional<MotionSpectrum> motion_;
   double duration_ = 1;
-  bool linear_ = false;
   const Candidate *best_ = nullptr, *second_ = nullptr;
 };
 

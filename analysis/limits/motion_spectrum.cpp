@@ -13,7 +13,7 @@ constexpr Eigen::Index most_numbers = 20'000'000;  // that the vectors may have 
 constexpr double dependent = 1e-10;                // of a vector's norm: what is left of it is rounding
 constexpr double still = 1e-12;                    // of k0 ‖x‖: forces this small are rounding
 constexpr double slow_and_fast = 1e6;              // τ² in units of 1/k0
-constexpr double nothing_brings_back = 1e-9;       // of k0
+constexpr double nothing_brings_back = 1e-13;      // of k0: less is rounding
 constexpr double carries = 0.01;
 
 /// Vectors that are orthonormal in the mass inner product.

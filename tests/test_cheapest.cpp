@@ -154,7 +154,7 @@ BOOST_AUTO_TEST_CASE(a_step_for_an_error_is_the_largest) {
         BOOST_TEST(found.error == predicted_error(method, motion, duration, n));
         BOOST_TEST(found.error <= error);
         if (found.by_stability)
-          BOOST_TEST(duration / (error_samples * (n - 1.0)) > 0.02);
+          BOOST_TEST(duration / (error_samples * static_cast<double>(n - 1)) > 0.02);
         else
           BOOST_TEST(predicted_error(method, motion, duration, n - 1 - n / 50) > error);
       }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/command.h"
+#include "tests/results.h"
 
 BOOST_FIXTURE_TEST_SUITE(hostile, springstab::test::Command)
 
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 using springstab::test::Command;
 using springstab::test::lines;
 using springstab::test::Outcome;
+using springstab::test::without_cheapest;
 
 namespace {
 
@@ -276,7 +278,7 @@ BOOST_AUTO_TEST_CASE(a_decimal_comma_changes_nothing) {
       const Outcome here = (*this)(arguments), there = shell(german + "\"$springstab\" " + arguments);
       BOOST_TEST(here.status == 0);
       BOOST_TEST(here.out.find('.') != std::string::npos);
-      BOOST_TEST((here.out == there.out));
+      BOOST_TEST((without_cheapest(here.out) == without_cheapest(there.out)));
     }
 }
 

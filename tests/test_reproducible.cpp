@@ -20,6 +20,7 @@ using springstab::test::content_of;
 using springstab::test::files_in;
 using springstab::test::Outcome;
 using springstab::test::untimed;
+using springstab::test::without_cheapest;
 
 namespace {
 
@@ -30,12 +31,6 @@ struct Result {
 
   bool operator==(const Result&) const = default;
 };
-
-// The last line of `limits` compares times.
-std::string without_cheapest(std::string report) {
-  if (const auto at = report.find("\ncheapest"); at != std::string::npos) report.erase(at);
-  return report;
-}
 
 // The command with its files in the folder `out`.
 Result result_of(const Command& command, const std::string& arguments, const std::string& options = "") {

@@ -175,12 +175,14 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   CheckpointFile checkpoint(options.output, identity(common, options), options.earlier, common.quiet);
   std::optional<Recorder> recorder;
   const StopOnInterrupt interrupt;
-  const Course course =
+  Course course =
       run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder, error);
-  if (error && course.result.status == StepStatus::done && !course.stopped &&
-      error->is_to_repeat(start, chooser.decisions().h)) {
-    checkpoint.finish();
-    return again;
+  if (error && course.result.status == StepStatus::done && !course.stopped) {
+    if (error->is_to_repeat(start, chooser.decisions().h, interrupt)) {
+      checkpoint.finish();
+      return again;
+    }
+    course.stopped = interrupt.requested();
   }
   if (course.diverged() && options.keep_diverged) {
     checkpoint.finish();  // frames get other numbers: nothing can go on from it

@@ -52,7 +52,9 @@ ErrorRun::ErrorRun(const CommonOptions& common, const SimulateOptions& options, 
                                                     .definiteness = subject.is_linear()});
   const CheapestOptions asked{
       .error = options.error, .duration = options.duration, .relinearize = options.relinearize};
+  std::optional<Waiting> waiting(std::in_place, "choosing method and step", common.quiet);
   const CheapestMethod cheapest(limits, subject, start, methods, asked);
+  waiting.reset();
   reason_ = reason(cheapest, asked);
   const Candidate* const best = cheapest.best();
   if (!best) {
@@ -73,7 +75,8 @@ void ErrorRun::see(double time, const State<Vector>& state) {
 }
 
 // The second run, with the damping of the first. Nothing where it does not finish.
-std::optional<double> ErrorRun::difference(const State<Vector>& start, double h) {
+std::optional<double> ErrorRun::difference(const State<Vector>& start, double h,
+                                           const StopOnInterrupt& interrupt) {
   StepOptions options = step_options(common_, options_);
   options.step = check_step_ = h / 2;
   options.relinearize /= 2;
@@ -94,18 +97,18 @@ std::optional<double> ErrorRun::difference(const State<Vector>& start, double h)
           ++next;
         }
         if (so_far.steps % 64 == 0) progress.update(so_far.time / options_.duration);
-        return true;
+        return !interrupt.requested();
       },
       chooser.policy());
   if (result.status != StepStatus::done || next < samples_.size()) return std::nullopt;
   return wrong > 0 ? std::sqrt(wrong / moved) : 0;
 }
 
-bool ErrorRun::is_to_repeat(const State<Vector>& start, double h) {
+bool ErrorRun::is_to_repeat(const State<Vector>& start, double h, const StopOnInterrupt& interrupt) {
   ++runs_;
   const int order = Method(options_.method).info().order;
   estimate_.reset();
-  if (const std::optional<double> away = difference(start, h); away && std::isfinite(*away))
+  if (const std::optional<double> away = difference(start, h, interrupt); away && std::isfinite(*away))
     estimate_ = *away / (1 - std::pow(2.0, -order));
   samples_.clear();
   if (!estimate_ || !missed() || runs_ > 1) return false;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/limits/cheapest_method.h"
+#include "experiments/command/interrupt.h"
 #include "experiments/command/output.h"
 #include "experiments/simulate_options.h"
 
@@ -29,9 +30,9 @@ class ErrorRun {
 
   /// Sees every good state of the run.
   void see(double time, const State<Vector>& state);
-  /// After a run whose last steps had length h [s]: makes the second one. Whether the run is to be made
-  /// again, which happens once.
-  bool is_to_repeat(const State<Vector>& start, double h);
+  /// After a run whose last steps had length h [s]: makes the second one, unless interrupted. Whether the run
+  /// is to be made again, which happens once.
+  bool is_to_repeat(const State<Vector>& start, double h, const StopOnInterrupt& interrupt);
 
   bool missed() const { return !(estimate_ && *estimate_ <= *options_.error); }
   Json json() const;
@@ -42,7 +43,7 @@ class ErrorRun {
     double time;  // [s]
     Vector x;
   };
-  std::optional<double> difference(const State<Vector>& start, double h);
+  std::optional<double> difference(const State<Vector>& start, double h, const StopOnInterrupt& interrupt);
 
   const CommonOptions& common_;
   SimulateOptions options_;

@@ -33,8 +33,7 @@ void bind_own_step(py::module_& module) {
         d["leaves_at"] = largest.leaves_at;
         d["steps_tried"] = largest.steps_tried;
         py::list fits;
-        for (const MethodFit& fit : methods_that_fit(map, x, v, methods, options))
-          fits.append(fields(fit));
+        for (const MethodFit& fit : methods_that_fit(map, x, v, methods, options)) fits.append(fields(fit));
         d["fits"] = fits;
         return d;
       },

@@ -145,9 +145,11 @@ std::optional<double> transition_limit(const Method& method, const StructuralMat
   if (fails(first_step)) {
     for (double step = first_step / 10; step >= smallest_step * (1 - unit_roundoff); step /= 10)
       if (!fails(step)) return limit(step, 10 * step);
-    const bool undamped = std::any_of(modes.begin(), modes.end(), [](auto mu) { return mu.real() == 0; });
+    const bool some_undamped =
+        std::any_of(modes.begin(), modes.end(), [](auto mu) { return mu.real() == 0; });
     // What is far outside then is none of the motions, which are near 1.
-    return undamped || transition.radius(smallest_step / fastest) > 1.01 ? std::optional(0.0) : std::nullopt;
+    return some_undamped || transition.radius(smallest_step / fastest) > 1.01 ? std::optional(0.0)
+                                                                              : std::nullopt;
   }
   double holds = first_step;
   for (double step = second_step; step < largest_step;

@@ -26,7 +26,7 @@ UndampedMotions undamped_motions(const Eigen::MatrixXd& stiffness, const Eigen::
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness);
   const Eigen::VectorXd& values = solver.eigenvalues();
   const Eigen::MatrixXd sizes = damping.cwiseAbs();
-  Eigen::MatrixXd undamped(n, n);
+  Eigen::MatrixXd found(n, n);
   Eigen::Index count = 0;
   for (Eigen::Index first = 0, last = 0; first < n; first = last) {
     while (++last < n && values[last] - values[last - 1] <= equal) continue;
@@ -34,13 +34,13 @@ UndampedMotions undamped_motions(const Eigen::MatrixXd& stiffness, const Eigen::
     for (Eigen::Index j = 0; j < shapes.cols(); ++j) {
       const Eigen::VectorXd x = shapes.col(j);
       if ((damping * x).norm() <= resolved * round_off * (sizes * x.cwiseAbs()).norm())
-        undamped.col(count++) = x;
+        found.col(count++) = x;
     }
   }
-  const auto kept = undamped.leftCols(count);
+  const auto kept = found.leftCols(count);
   const Eigen::VectorXd lambda = (kept.transpose() * stiffness * kept).diagonal();
-  const Eigen::MatrixXd basis = Eigen::HouseholderQR<Eigen::MatrixXd>(kept).householderQ();
-  return {lambda, basis.rightCols(n - count)};
+  const Eigen::MatrixXd all = Eigen::HouseholderQR<Eigen::MatrixXd>(kept).householderQ();
+  return {lambda, all.rightCols(n - count)};
 }
 
 }  // namespace springstab

@@ -32,11 +32,11 @@ class RandomNets {
       net.rest.emplace_back(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
       net.mass.push_back(log_uniform(-2, 1));
     }
-    const double damping = log_uniform(-4, 0), damped = uniform(0, 1) < 0.5 ? 1 : 0.6;
+    const double common_damping = log_uniform(-4, 0), damped = uniform(0, 1) < 0.5 ? 1 : 0.6;
     const auto join = [&](int i, int j) {
       const double length = (net.rest[i] - net.rest[j]).norm();
       net.springs.push_back({i, j, log_uniform(0, 4),
-                             uniform(0, 1) < damped ? damping * log_uniform(0, 2) : 0,
+                             uniform(0, 1) < damped ? common_damping * log_uniform(0, 2) : 0,
                              stretched ? length * uniform(0.5, 1) : length});
     };
     for (int j = 1; j < n; ++j) join(static_cast<int>(uniform(0, j)), j);

@@ -14,7 +14,7 @@ constexpr double least_budget = 1e-3, budget_share = 0.01;  // a method: [s], of
 std::string times(double factor) { return text("%.3g times as", factor); }
 
 // Against the one that costs next to least.
-std::string comparison(const Candidate& best, const Candidate& second) {
+std::string comparison(const MethodCost& best, const MethodCost& second) {
   const double dearer = *second.cpu_per_step / *best.cpu_per_step, longer = second.step / best.step;
   const std::string& name = second.method.name();
   if (longer > 1)
@@ -74,7 +74,7 @@ CheapestOptions cheapest_options(const LimitsOptions& options, double limits_sec
 }
 
 std::string reason(const CheapestMethod& cheapest, const CheapestOptions& options) {
-  const Candidate* const best = cheapest.best();
+  const MethodCost* const best = cheapest.best();
   if (!best) return none_reason(cheapest, options);
   std::string all;
   if (best->error)
@@ -84,7 +84,7 @@ std::string reason(const CheapestMethod& cheapest, const CheapestOptions& option
 }
 
 Json cheapest_json(const CheapestMethod& cheapest, const CheapestOptions& options) {
-  const Candidate* const best = cheapest.best();
+  const MethodCost* const best = cheapest.best();
   Json json{{"method", best ? Json(best->method.name()) : Json()},
             {"step", best ? number(best->step) : Json()},
             {"cpu_seconds_per_second", best ? number(best->cost()) : Json()},
@@ -106,7 +106,7 @@ void add_steps(Json& json, const CheapestMethod& cheapest, const Method& method,
     json["frame_step"] = of_frame ? number(of_frame->step) : Json();
   }
   if (options.error) {
-    const Candidate* const found = cheapest.find(method);
+    const MethodCost* const found = cheapest.find(method);
     json["error_step"] = found ? number(found->step) : Json();
     json["predicted_error"] = found ? number(found->error) : Json();
   }
@@ -114,7 +114,7 @@ void add_steps(Json& json, const CheapestMethod& cheapest, const Method& method,
 
 void print_cheapest(const CheapestMethod& cheapest, StructureLimits& answer, std::span<const Method> methods,
                     const CheapestOptions& options) {
-  const Candidate* const best = cheapest.best();
+  const MethodCost* const best = cheapest.best();
   if (options.frame_rate) print_frames(answer, methods, *options.frame_rate);
   std::cout << "\ncheapest";
   if (options.error) std::cout << text(" for an error of %g", *options.error);

@@ -56,7 +56,7 @@ ErrorRun::ErrorRun(const CommonOptions& common, const SimulateOptions& options, 
   const CheapestMethod cheapest(limits, subject, start, methods, asked);
   waiting.reset();
   reason_ = reason(cheapest, asked);
-  const Candidate* const best = cheapest.best();
+  const MethodCost* const best = cheapest.best();
   if (!best) {
     no_choice_ = limits.k0().converged ? reason_ : "k0 did not converge";
     return;

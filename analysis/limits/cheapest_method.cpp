@@ -105,7 +105,7 @@ CheapestMethod::CheapestMethod(StructureLimits& answer, Model& model, const Stat
   }
   choose_steps(answer, methods, options);
   measure(model, start, options);
-  for (const Candidate& each : candidates_) {
+  for (const MethodCost& each : candidates_) {
     if (!each.cpu_per_step) continue;
     if (!best_ || *each.cost() < *best_->cost()) {
       second_ = std::exchange(best_, &each);
@@ -121,7 +121,7 @@ void CheapestMethod::choose_steps(StructureLimits& answer, std::span<const Metho
     const std::optional<double> largest = answer.limits(method).recommended;
     if (!largest) continue;
     if (method.info().implicit && !answer.structure().matrices.symmetric) continue;  // no such solver
-    Candidate candidate{method, *largest, std::nullopt};
+    MethodCost candidate{method, *largest, std::nullopt};
     if (options.error) {
       if (!motion_ || (method.info().linearized && methods.size() > 1)) continue;
       const auto found = step_for_error(method, *motion_, {duration_, *options.error}, *largest);
@@ -137,15 +137,15 @@ void CheapestMethod::choose_steps(StructureLimits& answer, std::span<const Metho
 void CheapestMethod::measure(Model& model, const State<Vector>& start, const CheapestOptions& options) {
   const DampingModel damping = model.damping();
   const bool designed = damping.kind == DampingModel::Kind::designed;
-  for (Candidate& each : candidates_) {
+  for (MethodCost& each : candidates_) {
     if (designed) model.set_alpha(designed_alpha(stability_region(each.method), each.step, damping.d0));
     each.cpu_per_step = springstab::cpu_per_step(model.system(), each.method, each.step, start, options);
   }
   if (designed && !candidates_.empty()) model.design_damping();
 }
 
-const Candidate* CheapestMethod::find(const Method& method) const {
-  const auto found = std::ranges::find(candidates_, method, &Candidate::method);
+const MethodCost* CheapestMethod::find(const Method& method) const {
+  const auto found = std::ranges::find(candidates_, method, &MethodCost::method);
   return found == candidates_.end() ? nullptr : &*found;
 }
 

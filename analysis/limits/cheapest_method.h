@@ -4,7 +4,7 @@
 //
 //     StructureLimits answer(model.structure(start), {.max_step = 0.01});
 //     const CheapestMethod cheapest(answer, model, start, all_methods(), {.error = 0.01});
-//     if (const Candidate* best = cheapest.best())
+//     if (const MethodCost* best = cheapest.best())
 //       std::cout << best->method.name() << " at " << best->step << " s\n";
 #pragma once
 
@@ -35,7 +35,7 @@ struct CheapestOptions {
   double budget = 1e-3;                // of CPU time a method, beyond its first two steps [s]
 };
 
-struct Candidate {
+struct MethodCost {
   Method method;
   double step;                           // [s]
   std::optional<double> error;           // predicted, where one was asked for
@@ -64,11 +64,11 @@ class CheapestMethod {
   /// Those with a step, in the order of the methods. Where an error is asked for, a linearized method stands
   /// among them only if it is the only method: of a linear system it takes the steps of the method inside,
   /// and a scene's has its error in forces that stay frozen, which the linear system does not show.
-  const std::vector<Candidate>& candidates() const { return candidates_; }
-  const Candidate* find(const Method& method) const;
+  const std::vector<MethodCost>& candidates() const { return candidates_; }
+  const MethodCost* find(const Method& method) const;
   /// Of those whose steps succeed the two that cost least; null where there is none.
-  const Candidate* best() const { return best_; }
-  const Candidate* second() const { return second_; }
+  const MethodCost* best() const { return best_; }
+  const MethodCost* second() const { return second_; }
 
   /// Over which errors count [s]: that of the options, the motion's slowest period, or 1 s where nothing
   /// brings it back.
@@ -80,10 +80,10 @@ class CheapestMethod {
   void choose_steps(StructureLimits& answer, std::span<const Method> methods, const CheapestOptions& options);
   void measure(Model& model, const State<Vector>& start, const CheapestOptions& options);
 
-  std::vector<Candidate> candidates_;
+  std::vector<MethodCost> candidates_;
   std::optional<MotionSpectrum> motion_;
   double duration_ = 1;
-  const Candidate *best_ = nullptr, *second_ = nullptr;
+  const MethodCost *best_ = nullptr, *second_ = nullptr;
 };
 
 }  // namespace springstab

@@ -15,8 +15,6 @@
 namespace springstab {
 namespace {
 
-constexpr double same = 1e-4;  // distance of eigenvalues below which a step is a method's
-
 struct ProbeOptions {
   std::vector<std::string> command;
   std::string claims, state;
@@ -94,7 +92,8 @@ struct Finding {
 };
 
 const MethodFit* compared(const Finding& found, const std::string& claims) {
-  if (claims.empty()) return !found.fits.empty() && found.fits[0].distance < same ? &found.fits[0] : nullptr;
+  if (claims.empty())
+    return !found.fits.empty() && found.fits[0].distance < same_eigenvalues ? &found.fits[0] : nullptr;
   const auto of_claim = std::ranges::find(found.fits, Method(claims), &MethodFit::method);
   if (of_claim == found.fits.end())
     throw InputError("--claims", 0,
@@ -113,14 +112,15 @@ Json report(const Finding& found, const std::string& claims) {
   for (const MethodFit& fit : found.fits)
     fits.push_back(
         {{"method", fit.method.name()}, {"distance", number(fit.distance)}, {"h_max", number(fit.h_max)}});
-  const bool fit = !found.fits.empty() && found.fits[0].distance < same;
-  Json json{{"h_max", number(found.largest.h_max)},
-            {"leaves_at", {found.largest.leaves_at.real(), found.largest.leaves_at.imag()}},
-            {"method_that_fits", fit ? Json(found.fits[0].method.name()) : Json()},
-            {"claims", claims.empty() ? Json() : Json(claims)},
-            {"is_what_it_claims", claims.empty() ? Json() : Json(found.compared->distance < same)},
-            {"ratio", number(ratio(found))},
-            {"fits", fits}};
+  const bool fit = !found.fits.empty() && found.fits[0].distance < same_eigenvalues;
+  Json json{
+      {"h_max", number(found.largest.h_max)},
+      {"leaves_at", {found.largest.leaves_at.real(), found.largest.leaves_at.imag()}},
+      {"method_that_fits", fit ? Json(found.fits[0].method.name()) : Json()},
+      {"claims", claims.empty() ? Json() : Json(claims)},
+      {"is_what_it_claims", claims.empty() ? Json() : Json(found.compared->distance < same_eigenvalues)},
+      {"ratio", number(ratio(found))},
+      {"fits", fits}};
   return json;
 }
 
@@ -136,11 +136,12 @@ void print(const Finding& found, const std::string& claims) {
         l.leaves_at.real(), l.leaves_at.imag());
   }
   if (!found.fits.empty())
-    std::cout << text("%s %s, whose eigenvalues are at most %.2g away\n",
-                      found.fits[0].distance < same ? "its steps are those of" : "no method fits; nearest is",
-                      found.fits[0].method.name().c_str(), found.fits[0].distance);
+    std::cout << text(
+        "%s %s, whose eigenvalues are at most %.2g away\n",
+        found.fits[0].distance < same_eigenvalues ? "its steps are those of" : "no method fits; nearest is",
+        found.fits[0].method.name().c_str(), found.fits[0].distance);
   if (!claims.empty())
-    std::cout << text("it is %s%s", found.compared->distance < same ? "" : "not ", claims.c_str())
+    std::cout << text("it is %s%s", found.compared->distance < same_eigenvalues ? "" : "not ", claims.c_str())
               << text(" (eigenvalues at most %.2g away)\n", found.compared->distance);
   if (const auto r = ratio(found))
     std::cout << text("%.6g of the largest step of %s for the same forces\n", *r,

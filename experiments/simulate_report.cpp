@@ -13,20 +13,6 @@ namespace {
 // What is told of a gain: from this part of the energy turned over on, and from this speed of all that moves.
 constexpr double told_gain = 0.01, told_speed = 1e-9;  // [m/s]
 
-const char* outcome(StepStatus status) {
-  switch (status) {
-    case StepStatus::done:
-      return "done";
-    case StepStatus::diverged:
-      return "diverged";
-    case StepStatus::not_positive_definite:
-      return "not positive definite";
-    case StepStatus::not_converged:
-      break;
-  }
-  return "not converged";
-}
-
 double energy_of(const State<Vector>& state, System& system) {
   return system.kinetic_energy(state.v) + system.potential_energy(state.x);
 }
@@ -69,6 +55,20 @@ void print_decisions(const StepDecisions& decisions, bool linearized) {
 }
 
 }  // namespace
+
+const char* outcome(StepStatus status) {
+  switch (status) {
+    case StepStatus::done:
+      return "done";
+    case StepStatus::diverged:
+      return "diverged";
+    case StepStatus::not_positive_definite:
+      return "not positive definite";
+    case StepStatus::not_converged:
+      break;
+  }
+  return "not converged";
+}
 
 Json json_of(const Course& course, const SimulateOptions& options, Subject& subject,
              const StepChooser& chooser, int frames) {

@@ -25,6 +25,9 @@ struct Course {
   }
 };
 
+/// How a run ended, in words.
+const char* outcome(StepStatus status);
+
 /// `frames` is how many were written.
 Json json_of(const Course& course, const SimulateOptions& options, Subject& subject,
              const StepChooser& chooser, int frames);

@@ -18,6 +18,7 @@ py::dict fields(const MethodFit& fit) {
 }  // namespace
 
 void bind_own_step(py::module_& module) {
+  module.attr("same_eigenvalues") = same_eigenvalues;
   module.def(
       "largest_stable_step",
       [](const Step& step, const Vector& x, const Vector& v, const std::vector<std::string>& names,

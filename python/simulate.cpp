@@ -1,6 +1,7 @@
 // Runs, with their frames as arrays.
 #include "analysis/limits/step_policy.h"
 #include "experiments/runs/step_run.h"
+#include "experiments/simulate_report.h"
 #include "python/bindings.h"
 #include "solvers/simulation.h"
 
@@ -37,21 +38,6 @@ struct Frames {
     return py::array_t<double>(shape, positions.data());
   }
 };
-
-const char* name(const SimulationResult& result, bool stopped) {
-  if (stopped) return "stopped";
-  switch (result.status) {
-    case StepStatus::done:
-      return "done";
-    case StepStatus::diverged:
-      return "diverged";
-    case StepStatus::not_positive_definite:
-      return "not positive definite";
-    case StepStatus::not_converged:
-      break;
-  }
-  return "not converged";
-}
 
 State<Vector> start_of(Model& model, std::uint64_t seed, const std::optional<Vector>& x,
                        const std::optional<Vector>& v) {
@@ -101,7 +87,7 @@ py::dict simulate(Input& input, const StepOptions& options, int frames, const Ca
   d["step"] = plan.h;
   d["steps"] = result.steps;
   d["time"] = result.time;
-  d["status"] = name(result, stopped);
+  d["status"] = stopped ? "stopped" : outcome(result.status);
   d["diverged_at"] = result.status == StepStatus::diverged ? std::optional(result.failed_at) : std::nullopt;
   d["energy"] =
       py::make_tuple(model.system().kinetic_energy(start.v) + model.system().potential_energy(start.x),

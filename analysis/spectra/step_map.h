@@ -54,6 +54,9 @@ struct LargestStep {
 LargestStep largest_stable_step(const StepMap& map, const Vector& x, const Vector& v,
                                 const StepMapOptions& options = {});
 
+/// Distance of eigenvalues below which a map's steps are a method's.
+inline constexpr double same_eigenvalues = 1e-4;
+
 struct MethodFit {
   Method method;
   double distance;              // of the map's eigenvalues from those of this method, the largest

@@ -2,6 +2,8 @@ from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import numpy as np
 
+same_eigenvalues: float
+
 class Input:
     def __init__(self, stiffness: Any = ..., mass: Any = ..., damping: Any = ..., **words: Any) -> None: ...
     @property

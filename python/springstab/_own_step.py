@@ -11,8 +11,6 @@ from . import _core
 from ._input import positive
 from ._region import Method, methods
 
-_same = 1e-4  # distance of eigenvalues below which a step is a method's
-
 
 @dataclass(frozen=True)
 class MethodFit:
@@ -48,12 +46,12 @@ class OwnStep:
 
     @property
     def is_what_it_claims(self) -> Optional[bool]:
-        return None if self.claimed is None else self.claimed.distance < _same
+        return None if self.claimed is None else self.claimed.distance < _core.same_eigenvalues
 
     @property
     def method_that_fits(self) -> Optional[str]:
         """The best one, if its eigenvalues are the step's to 1e-4."""
-        return self.fits[0].method if self.fits and self.fits[0].distance < _same else None
+        return self.fits[0].method if self.fits and self.fits[0].distance < _core.same_eigenvalues else None
 
 
 def largest_stable_step(step: Callable[[np.ndarray, np.ndarray, float], Tuple[np.ndarray, np.ndarray]], x, v,

@@ -98,6 +98,8 @@ Accelerations accelerations(const StepMap& map, const Vector& x, const Vector& v
   const Eigen::Index n = map.size;
   const auto at = [&](double step) {
     const Eigen::MatrixXd j = linearized(map, x, v, step, difference);
+    if (!j.allFinite())
+      throw std::invalid_argument("the step at h = " + std::to_string(step) + " s is not finite");
     // Rows of h v: ∂(h v)/∂x = -h²K', ∂(h v)/∂(h v) = 1 - hD'.
     Eigen::MatrixXd both(n, 2 * n);
     both << -j.bottomLeftCorner(n, n) / (step * step),
@@ -184,8 +186,11 @@ LargestStep largest_stable_step(const StepMap& map, const Vector& x, const Vecto
   }
   found.leaves_at = eigenvalue(1.01 * low);
   found.radius_above = std::abs(found.leaves_at);
-  if (found.radius_above > 1 + sharp || std::abs(eigenvalue(low / well_below)) <= 1 + differences)
-    found.h_max = low;
+  if (found.radius_above > 1 + sharp || std::abs(eigenvalue(low / well_below)) <= 1 + differences) {
+    // Where the eigenvalue leaves slowly it was outside before that could be told: back along its chord.
+    const double left = found.radius_above - 1 - outside;
+    found.h_max = left > outside ? low * (1 - 0.01 * outside / left) : low;
+  }
   return found;
 }
 

@@ -283,7 +283,10 @@ BOOST_AUTO_TEST_CASE(limits_of_nets_are_below_the_truth_of_dense_eigenvalues) {
       }
       if (l.status == LimitStatus::none) {
         BOOST_TEST((stability_region(Method(name)).amplifies() && !l.h_certified), name);
-        BOOST_TEST(growth(name, 1e-4 / std::sqrt(k0.value)) > 1, name);
+        // At much smaller steps what hht-alpha:alpha=0.1 grows by, as h³, is less than rounding of an
+        // eigenvalue.
+        for (const double part : {0.1, 1.0})
+          BOOST_TEST(growth(name, part / std::sqrt(k0.value)) > 1 + 1e-9, name);
         none += 1;
         continue;
       }

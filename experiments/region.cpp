@@ -170,77 +170,99 @@ CellComparison compare_cells(std::string_view method, const CellGrid& grid, long
   return result;
 }
 
-static int run_region(const CommonOptions& common, const RegionOptions& options) {
-  const StabilityRegion& region = stability_region(options.method);
+namespace {
+
+CellGrid grid_of(const StabilityRegion& region, const RegionOptions& options) {
   CellGrid grid{region.natural_window(0.1), options.nx, options.ny};
   parse_range(options.x, "--x", grid.window.x_min, grid.window.x_max);
   parse_range(options.y, "--y", grid.window.y_min, grid.window.y_max);
   check(grid.window);
-  check(options);
+  return grid;
+}
 
-  const std::vector<double> radii = spectral_radii(options.method, grid, common.threads);
+Json report_of(const RegionOptions& options, const StabilityRegion& region, const Window& window,
+               const std::vector<double>& radii) {
   long stable = 0, neutral = 0;
   for (double rho : radii) {
     stable += rho < 1 - neutral_band;
     neutral += std::abs(rho - 1) <= neutral_band;
   }
+  const RegionConstants& c = region.constants();
+  return {{"method", options.method},
+          {"window", {{"x", {window.x_min, window.x_max}}, {"y", {window.y_min, window.y_max}}}},
+          {"y_max", number(c.y_max)},
+          {"x_at_y_max", std::isfinite(c.x_at_y_max) ? number(c.x_at_y_max) : Json()},
+          {"y_max_attained", c.y_max_attained},
+          {"cells", radii.size()},
+          {"stable_cells", stable},
+          {"neutral_cells", neutral},
+          {"area", number(region.area(window))}};
+}
+
+Json report_of(const CellComparison& cells) {
+  return {{"cells", cells.cells},
+          {"steps", cells.steps},
+          {"threshold", cells.threshold},
+          {"diverged", cells.diverged},
+          {"disagreements", cells.disagreements},
+          {"band", cells.band},
+          {"outside_band", cells.outside_band}};
+}
+
+void print_largest_y(const std::string& method, const RegionConstants& c) {
+  if (!(c.y_max > 0)) {
+    std::cout << "  no X, Y is stable: the method amplifies\n";
+    return;
+  }
+  if (std::isfinite(c.y_max))
+    std::cout << text("  largest Y   %.12g at X = %.12g%s\n", c.y_max, c.x_at_y_max,
+                      c.y_max_attained ? "" : " (not attained: powers grow there)");
+  else
+    std::cout << "  largest Y   unbounded\n";
+  if (amplifies_without_need(method))
+    std::cout << "  undamped    motion grows at every step: the method amplifies\n";
+}
+
+void print_region(const Json& report, const RegionConstants& constants, const Window& window) {
+  const auto method = report["method"].get<std::string>();
+  std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", method.c_str(), window.x_min, window.x_max,
+                    window.y_min, window.y_max);
+  print_largest_y(method, constants);
+  std::cout << text("  area        %.12g inside the window\n", report["area"].get<double>())
+            << text("  cells       %ld stable, %ld neutral of %ld\n", report["stable_cells"].get<long>(),
+                    report["neutral_cells"].get<long>(), report["cells"].get<long>());
+  if (!report.contains("simulated")) return;
+  const Json& s = report["simulated"];
+  std::cout << text(
+      "  simulated   %ld cells of %ld steps: %ld diverged, %ld differ from theory, %ld of them where "
+      "|rho - 1| >= %.3g\n",
+      s["cells"].get<long>(), s["steps"].get<long>(), s["diverged"].get<long>(),
+      s["disagreements"].get<long>(), s["outside_band"].get<long>(), s["band"].get<double>());
+}
+
+int run_region(const CommonOptions& common, const RegionOptions& options) {
+  const StabilityRegion& region = stability_region(options.method);
+  const CellGrid grid = grid_of(region, options);
+  check(options);
+  const std::vector<double> radii = spectral_radii(options.method, grid, common.threads);
   if (!options.raster.empty()) write_raster(options.raster, grid, radii);
   if (!options.boundary.empty()) write_boundary(options.boundary, region, grid.window);
   if (!options.pieces.empty()) write_pieces(options.pieces, region, grid.window);
 
-  const RegionConstants& c = region.constants();
-  const double area = region.area(grid.window);
-  Json report{
-      {"method", options.method},
-      {"window",
-       {{"x", {grid.window.x_min, grid.window.x_max}}, {"y", {grid.window.y_min, grid.window.y_max}}}},
-      {"y_max", number(c.y_max)},
-      {"x_at_y_max", std::isfinite(c.x_at_y_max) ? number(c.x_at_y_max) : Json()},
-      {"y_max_attained", c.y_max_attained},
-      {"cells", radii.size()},
-      {"stable_cells", stable},
-      {"neutral_cells", neutral},
-      {"area", number(area)}};
+  Json report = report_of(options, region, grid.window, radii);
   if (options.simulated_cells > 0) {
     const CellGrid coarse{grid.window, options.simulated_cells, options.simulated_cells};
-    const CellComparison cells =
-        compare_cells(options.method, coarse, options.cell_steps, common.threads, options.cells);
-    report["simulated"] = {{"cells", cells.cells},
-                           {"steps", cells.steps},
-                           {"threshold", cells.threshold},
-                           {"diverged", cells.diverged},
-                           {"disagreements", cells.disagreements},
-                           {"band", cells.band},
-                           {"outside_band", cells.outside_band}};
+    report["simulated"] =
+        report_of(compare_cells(options.method, coarse, options.cell_steps, common.threads, options.cells));
   }
-  if (common.json) {
+  if (common.json)
     print_json(report);
-    return done;
-  }
-  std::cout << text("%s, X in [%g, %g], Y in [%g, %g]\n", options.method.c_str(), grid.window.x_min,
-                    grid.window.x_max, grid.window.y_min, grid.window.y_max);
-  if (c.y_max <= 0) {
-    std::cout << "  no X, Y is stable: the method amplifies\n";
-  } else if (std::isfinite(c.y_max)) {
-    std::cout << text("  largest Y   %.12g at X = %.12g%s\n", c.y_max, c.x_at_y_max,
-                      c.y_max_attained ? "" : " (not attained: powers grow there)");
-  } else {
-    std::cout << "  largest Y   unbounded\n";
-  }
-  if (c.y_max > 0 && amplifies_without_need(options.method))
-    std::cout << "  undamped    motion grows at every step: the method amplifies\n";
-  std::cout << text("  area        %.12g inside the window\n", area)
-            << text("  cells       %ld stable, %ld neutral of %zu\n", stable, neutral, radii.size());
-  if (report.contains("simulated")) {
-    const Json& s = report["simulated"];
-    std::cout << text(
-        "  simulated   %ld cells of %ld steps: %ld diverged, %ld differ from theory, %ld of them where "
-        "|rho - 1| >= %.3g\n",
-        s["cells"].get<long>(), s["steps"].get<long>(), s["diverged"].get<long>(),
-        s["disagreements"].get<long>(), s["outside_band"].get<long>(), s["band"].get<double>());
-  }
+  else
+    print_region(report, region.constants(), grid.window);
   return done;
 }
+
+}  // namespace
 
 Subcommand region_command() {
   const auto o = std::make_shared<RegionOptions>();

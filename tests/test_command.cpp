@@ -430,7 +430,7 @@ BOOST_AUTO_TEST_CASE(an_unused_feature_changes_no_count_and_no_digit) {
 // The net of the README's speed table, 64 x 64 and smaller, after half a second of implicit Euler. The
 // numbers are what conjugate gradients to 1e-13 and the factorization agree on; to 1e-10 they are 1e-11 m
 // off.
-BOOST_AUTO_TEST_CASE(the_hanging_net_drapes_as_it_always_did) {
+BOOST_AUTO_TEST_CASE(the_hanging_net_drapes_as_it_always_did, *boost::unit_test::label("slow")) {
   std::ifstream shipped(SPRINGSTAB_SOURCE_DIR "/experiments/scenes/hanging_net_64.json");
   Json scene = Json::parse(shipped);
   BOOST_TEST(scene["geometry"]["grid"] == Json({64, 64}));
@@ -656,7 +656,7 @@ BOOST_AUTO_TEST_CASE(a_solid_of_tetrahedra_is_a_scene_like_any_other) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(complexity_tells_tables_and_every_run) {
+BOOST_AUTO_TEST_CASE(complexity_tells_tables_and_every_run, *boost::unit_test::label("slow")) {
   const Outcome run = (*this)("complexity --quick --json");
   BOOST_REQUIRE_EQUAL(run.status, 0);
   const Json report = run.json();

@@ -288,7 +288,8 @@ BOOST_AUTO_TEST_CASE(the_last_steps_of_a_run_that_diverges_are_kept_if_wanted) {
   BOOST_TEST(close(x.back() / x[x.size() - 2], -(4.25 + std::sqrt(4.25 * 4.25 - 4)) / 2, 0.01));
 }
 
-BOOST_AUTO_TEST_CASE(progress_is_shown_on_a_terminal_and_erased_before_the_result) {
+BOOST_AUTO_TEST_CASE(progress_is_shown_on_a_terminal_and_erased_before_the_result,
+                     *boost::unit_test::label("slow")) {
   const std::string limits = on_terminal(folder(), {"limits", "--grid", "300x300", "--pin", "first-row"});
   BOOST_TEST(has(limits, "\r\033[Klimits: "));
   BOOST_TEST(left_on(limits).starts_with("269100 unknowns"), left_on(limits).substr(0, 80));

@@ -236,7 +236,8 @@ BOOST_AUTO_TEST_CASE(radii_by_lanes_are_those_of_the_eigenvalues) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(simulated_cells_agree_with_the_region_outside_the_band) {
+BOOST_AUTO_TEST_CASE(simulated_cells_agree_with_the_region_outside_the_band,
+                     *boost::unit_test::label("slow")) {
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> of_x(-1, 7), of_y(-1, 14);
   constexpr long steps = 1000;

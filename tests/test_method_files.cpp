@@ -278,7 +278,7 @@ BOOST_AUTO_TEST_CASE(orders_are_found_from_the_coefficients) {
 
 // Certified is below the truth; fully implicit methods are stable where they say they are; what has neither a
 // stability function nor scalar coefficients has a proof by Lyapunov or a reason.
-BOOST_AUTO_TEST_CASE(limits_are_below_the_truth_of_dense_eigenvalues) {
+BOOST_AUTO_TEST_CASE(limits_are_below_the_truth_of_dense_eigenvalues, *boost::unit_test::label("slow")) {
   RandomNets random(35);
   int certified = 0, unlimited = 0, reasons = 0;
   std::vector<Method> methods;

@@ -102,7 +102,7 @@ BOOST_AUTO_TEST_CASE(figures_do_not_depend_on_threads) {
   BOOST_TEST((drawn("--threads 3") == first));
 }
 
-BOOST_AUTO_TEST_CASE(limits_are_the_same_every_time) {
+BOOST_AUTO_TEST_CASE(limits_are_the_same_every_time, *boost::unit_test::label("slow")) {
   file("rayleigh.json", net + R"("damping": {"d0": 1, "alpha": 1e-4}})");
   file("damped.json", net + R"("material": {"damping": {"structural": 0.01, "shear": 0.01}}})");
   file("chain.mtx", chain);
@@ -114,7 +114,7 @@ BOOST_AUTO_TEST_CASE(limits_are_the_same_every_time) {
   expect_same_bytes(*this, "limits rayleigh.json", 0);
 }
 
-BOOST_AUTO_TEST_CASE(runs_are_the_same_every_time) {
+BOOST_AUTO_TEST_CASE(runs_are_the_same_every_time, *boost::unit_test::label("slow")) {
   file("stretched.json",
        net + R"("damping": {"d0": 1, "alpha": "designed"}, "initial": {"stretch": [3, 1, 3]}})");
   file("slack.json",

@@ -27,10 +27,11 @@ enum class StepStatus {
   not_converged,          // the linear solve used up its iterations
 };
 
-/// Whether every entry is finite; vector types without Eigen's member overload this.
+/// Whether every entry is finite, from a sum that vectorizes: 0 times an infinity or NaN is NaN. Vector types
+/// without Eigen's members overload this.
 template <class V>
 bool all_finite(const V& u) {
-  return u.allFinite();
+  return (typename V::Scalar(0) * u).sum() == 0;
 }
 
 inline bool all_finite(double u) { return std::isfinite(u); }

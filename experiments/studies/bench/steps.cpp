@@ -64,10 +64,10 @@ void rk4(Hand& s) {
 }
 
 void implicit_euler(Hand& s) {
-  s.y = s.x + h * s.v;
-  s.scene.acceleration(s.y, s.v, s.a);
-  s.scene.linearize(s.y, s.v, s.linear);
-  s.a *= h;
+  s.scene.acceleration(s.x, s.v, s.a);
+  s.scene.linearize(s.x, s.v, s.linear);
+  s.linear->stiffness_times(s.v, s.b);
+  s.a = h * (s.a - h * s.b);
   solve(s, h, s.a, s.b);
   s.v += s.b;
   s.x += h * s.v;

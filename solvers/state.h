@@ -27,21 +27,33 @@ enum class StepStatus {
   not_converged,          // the linear solve used up its iterations
 };
 
-/// Whether every entry is finite, from a sum that vectorizes: 0 times an infinity or NaN is NaN. Vector types
-/// without Eigen's members overload this.
+/// Whether every entry is finite. Eigen's types have a member that stops at the first that is not, entry by
+/// entry; a sum vectorizes: 0 times an infinity or NaN is NaN.
 template <class V>
 bool all_finite(const V& u) {
-  return (typename V::Scalar(0) * u).sum() == 0;
+  if constexpr (requires { typename V::Scalar; })
+    return (typename V::Scalar(0) * u).sum() == 0;
+  else
+    return u.allFinite();
 }
 
 inline bool all_finite(double u) { return std::isfinite(u); }
+
+/// Eigen's own for its types: std::swap copies a fixed-size array three times, and not as it was written.
+template <class V>
+void exchange(V& a, V& b) {
+  if constexpr (requires { a.swap(b); })
+    a.swap(b);
+  else
+    std::swap(a, b);
+}
 
 /// Ends a step: takes over the new state from the method's workspace if it is finite.
 template <class V>
 StepStatus commit(State<V>& state, V& x_new, V& v_new) {
   if (!all_finite(x_new) || !all_finite(v_new)) return StepStatus::diverged;
-  std::swap(state.x, x_new);
-  std::swap(state.v, v_new);
+  exchange(state.x, x_new);
+  exchange(state.v, v_new);
   return StepStatus::done;
 }
 

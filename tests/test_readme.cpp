@@ -233,7 +233,7 @@ BOOST_AUTO_TEST_CASE(commands_print_what_the_pages_show) {
       ++run;
     }
   }
-  BOOST_TEST(run >= 16);
+  BOOST_TEST(run >= 12);
 }
 
 BOOST_AUTO_TEST_CASE(scenes_run_and_methods_are_those_of_the_project) {

@@ -29,3 +29,11 @@ def on_page_markdown(markdown, page, config, files):
     if Path(page.file.abs_src_path).is_relative_to(config["docs_dir"]):
         return outside.sub(r"](\1", markdown)
     return re.sub(r"\]\((\.\./)?docs/", r"](\1", markdown)
+
+
+def on_nav(nav, config, files):
+    """A page that no reader finds is an error, too; but one that begins with _, which waits for its place."""
+    for file in files.documentation_pages():
+        if file.page not in nav.pages and not file.name.startswith("_"):
+            log.warning("%s stands nowhere in the nav of mkdocs.yml", file.src_path)
+    return nav

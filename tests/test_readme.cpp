@@ -288,9 +288,10 @@ BOOST_AUTO_TEST_CASE(options_exist) {
   for (const std::string& name :
        matches(list.substr(list.find("Subcommands:")), std::regex("\n  ([a-z-]+) ")))
     help += springstab(name + " --help").out;
-  const std::regex option("(--[a-z][a-z-]*)");
+  const std::regex option("(--[a-z][a-z_-]*)");
   std::set<std::string> known = matches(help, option);
-  known.insert({"--build", "--install", "--prefix", "--no-build-isolation"});  // of CMake and pip
+  // Of CMake, pip and Google Benchmark.
+  known.insert({"--build", "--install", "--prefix", "--no-build-isolation", "--benchmark_filter"});
   for (const std::filesystem::path& page : pages())
     for (const std::string& name : matches(content_of(page), option))
       BOOST_TEST(known.contains(name), page.filename() << " speaks of " << name);

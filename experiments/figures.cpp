@@ -49,13 +49,14 @@ int run_figures(const CommonOptions& common, const FiguresOptions& options) {
   if (!std::filesystem::is_regular_file(options.plots + "/region.gp"))
     throw InputError(options.plots, 0,
                      "has no region.gp, expected the folder of the gnuplot scripts (--plots)");
-  make_folder(options.output);
+  const std::string data = options.output + "/data";
+  make_folder(data);
 
   Json list = Json::array();
   bool all_hold = true;
   for (const Figure& figure : figures) {
     const auto start = std::chrono::steady_clock::now();
-    Json drawn = figure.draw(options.output + "/" + figure.file, common, options);
+    Json drawn = figure.draw({options.output + "/" + figure.file, data + "/" + figure.file}, common, options);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     all_hold = all_hold && drawn["holds"];
     if (!common.quiet)
@@ -75,20 +76,21 @@ int run_figures(const CommonOptions& common, const FiguresOptions& options) {
 
 Subcommand figures_command() {
   const auto o = std::make_shared<FiguresOptions>();
-  return {.name = "figures",
-          .title = "Computes and plots the figures (needs gnuplot)",
-          .footer = "example: springstab figures 1 2 --output figures",
-          .options = {Option("NAMES", &o->names,
-                             "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs, "
-                             "stress or any "
-                             "method's name, for its region (default: all)")
-                          .shown_as(""),
-                      Option("--quick", &o->quick, "fewer simulated cells, smaller cloths"),
-                      plots_option(o->plots),
-                      Option("--output", &o->output, "folder for the figures and their data")
-                          .shown_as("DIR")
-                          .with_default()},
-          .run = [o](const CommonOptions& common) { return run_figures(common, *o); }};
+  return {
+      .name = "figures",
+      .title = "Computes and plots the figures (needs gnuplot)",
+      .footer = "example: springstab figures 1 2 --output figures",
+      .options = {Option("NAMES", &o->names,
+                         "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs, "
+                         "stress or any "
+                         "method's name, for its region (default: all)")
+                      .shown_as(""),
+                  Option("--quick", &o->quick, "fewer simulated cells, smaller cloths"),
+                  plots_option(o->plots),
+                  Option("--output", &o->output, "folder for the figures; their data go into its folder data")
+                      .shown_as("DIR")
+                      .with_default()},
+      .run = [o](const CommonOptions& common) { return run_figures(common, *o); }};
 }
 
 }  // namespace springstab

@@ -427,7 +427,7 @@ BOOST_AUTO_TEST_CASE(an_unused_feature_changes_no_count_and_no_digit) {
   BOOST_TEST(plain["counts"] != run(R"("bending": 20)", "")["counts"]);
 }
 
-// The net of the README's speed table, 64 x 64 and smaller, after half a second of implicit Euler. The
+// The net of the speed table (docs/speed.md), 64 x 64 and smaller, after half a second of implicit Euler. The
 // numbers are what conjugate gradients to 1e-13 and the factorization agree on; to 1e-10 they are 1e-11 m
 // off.
 BOOST_AUTO_TEST_CASE(the_hanging_net_drapes_as_it_always_did, *boost::unit_test::label("slow")) {

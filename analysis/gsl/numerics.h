@@ -3,7 +3,7 @@
 //
 //     const double half_pi = root_between([](double t) { return std::cos(t); }, 1, 2);
 //
-// GSL is under the GNU General Public License, version 3; README says what that means for a binary.
+// GSL is under the GNU General Public License, version 3; docs/licence.md says what that means for a binary.
 #pragma once
 
 #include <complex>

@@ -3,7 +3,8 @@
 //
 //     {"name": "kutta3", "kind": "runge-kutta", "A": [[], ["1/2"], [-1, 2]], "b": ["1/6", "2/3", "1/6"]}
 //
-// Coefficients are numbers, or fractions in quotes. Keys of each kind (README, "Methods from files"):
+// Coefficients are numbers, or fractions in quotes. Keys of each kind (docs/methods.md, "Methods from
+// files"):
 //     runge-kutta   A, b, and c, which is then checked
 //     partitioned   position: {A, b}, velocity: {A, b}
 //     nystrom       c, position: {A, b}, velocity: {A, b}: the factors of h² and h

@@ -72,7 +72,7 @@ bool is_solid(const Geometry& geometry);
 /// nearest known one.
 Material named_material(const std::string& name, bool solid, const std::string& source, long line);
 
-/// Parses a scene (JSON; the schema stands in the README). Paths in it are relative to the file `source`;
+/// Parses a scene (JSON; the schema stands in docs/scenes.md). Paths in it are relative to the file `source`;
 /// only .msh and .vtk are opened, to see whether they hold a solid. Throws InputError with the line for
 /// syntax errors, unknown, duplicate or missing keys, wrong types, values out of range.
 SceneDescription parse_scene(const std::string& source, std::string_view text);

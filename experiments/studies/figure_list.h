@@ -7,6 +7,7 @@
 
 #include "experiments/command/options.h"
 #include "experiments/command/output.h"
+#include "experiments/studies/gnuplot.h"
 
 namespace springstab {
 
@@ -16,13 +17,13 @@ struct FiguresOptions {
   std::string plots, output = "paper_figures";  // folders
 };
 
-/// A figure. `draw` computes its data, writes them beside the picture and plots; it returns what the report
-/// tells: "files", "holds" (whether what the figure claims came out; a bool), "summary" (one line).
+/// A figure. `draw` computes its data, writes them and plots; it returns what the report tells: "files",
+/// "holds" (whether what the figure claims came out; a bool), "summary" (one line).
 struct Figure {
   std::string file;     // without folder and suffix
   std::string name;     // on the command line
   std::string alias{};  // another name, or empty
-  std::function<Json(const std::string& base, const CommonOptions&, const FiguresOptions&)> draw;
+  std::function<Json(const FigureFiles&, const CommonOptions&, const FiguresOptions&)> draw;
 };
 
 std::vector<Figure> region_figures();

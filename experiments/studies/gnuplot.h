@@ -6,6 +6,11 @@
 
 namespace springstab {
 
+/// Where a figure goes: its pictures, and the data they are drawn from. Folder and name, without suffix.
+struct FigureFiles {
+  std::string picture, data;
+};
+
 /// gnuplot's string literal.
 std::string gnuplot_literal(const std::string& s);
 

@@ -36,16 +36,16 @@ OverStable over_stable_part(const std::vector<RegionPiece>& pieces) {
   return found;
 }
 
-Json draw_region(const std::string& method, const std::string& number, const std::string& base,
+Json draw_region(const std::string& method, const std::string& number, const FigureFiles& files,
                  const CommonOptions& common, const FiguresOptions& options) {
   const StabilityRegion& region = stability_region(method);
   const RegionConstants& c = region.constants();
   const Window window = region.natural_window(0.15);
-  write_boundary(base + "_boundary.csv", region, window);
-  write_pieces(base + "_pieces.csv", region, window);
+  write_boundary(files.data + "_boundary.csv", region, window);
+  write_pieces(files.data + "_pieces.csv", region, window);
   const int side = options.quick ? 24 : 56;
   const CellComparison cells = compare_cells(method, {window, side, side}, options.quick ? 500 : 4000,
-                                             common.threads, base + "_cells.csv");
+                                             common.threads, files.data + "_cells.csv");
 
   std::string settings = text(
       "x_min=%.9g; x_max=%.9g; y_min=%.9g; y_max=%.9g; cells=%ld; steps=%ld; differ=%ld; "
@@ -62,10 +62,11 @@ Json draw_region(const std::string& method, const std::string& number, const std
   const OverStable over = over_stable_part(region.pieces(window));
   settings += text("has_over=%d; over_x=%.9g; over_y=%.9g; ", over.exists, over.x, over.y);
   settings += "method=" + gnuplot_literal(Method(method).info().title) +
-              "; number=" + gnuplot_literal(number) + "; data=" + gnuplot_literal(base) + "; ";
-  std::vector<std::string> files = draw(options.plots + "/region.gp", settings, base);
-  for (const char* part : {"_boundary.csv", "_pieces.csv", "_cells.csv"}) files.push_back(base + part);
-  return {{"files", files},
+              "; number=" + gnuplot_literal(number) + "; data=" + gnuplot_literal(files.data) + "; ";
+  std::vector<std::string> written = draw(options.plots + "/region.gp", settings, files.picture);
+  for (const char* part : {"_boundary.csv", "_pieces.csv", "_cells.csv"})
+    written.push_back(files.data + part);
+  return {{"files", written},
           {"holds", cells.outside_band == 0},
           {"summary", text("%ld simulated cells, %ld differ from theory, %ld of them outside the band",
                            cells.cells, cells.disagreements, cells.outside_band)},
@@ -83,9 +84,9 @@ Figure region_figure(const std::string& method) {
       {"explicit-euler", "1"}, {"rk4", "2"}, {"implicit-euler", "3"}};
   const auto found = numbered.find(Method(method).name());
   const std::string number = found == numbered.end() ? "" : found->second;
-  const auto draw_it = [method, number](const std::string& base, const CommonOptions& common,
+  const auto draw_it = [method, number](const FigureFiles& files, const CommonOptions& common,
                                         const FiguresOptions& options) {
-    return draw_region(method, number, base, common, options);
+    return draw_region(method, number, files, common, options);
   };
   if (number.empty()) return {.file = "region_" + method, .name = method, .draw = draw_it};
   return {.file = "figure_" + number + "_" + method, .name = number, .alias = method, .draw = draw_it};

@@ -12,7 +12,7 @@
 namespace springstab::bench::energies {
 namespace {
 
-/// The cloth of the speed table in the README, and its terms bound to their matrix.
+/// The cloth of the speed table (docs/speed.md), and its terms bound to their matrix.
 struct Cloth {
   explicit Cloth(int n)
       : free_count(n * (n - 1)),

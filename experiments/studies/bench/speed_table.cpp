@@ -1,4 +1,4 @@
-// The figures of the README's section "Speed", each beside what was wanted:
+// The figures of docs/speed.md, each beside what was wanted:
 //     ./run bench --benchmark_filter=table --benchmark_counters_tabular=true
 // The scenes are experiments/scenes/hanging_net_64.json and hanging_cloth_64.json. One core, CPU time, the
 // least of several runs.

@@ -148,9 +148,8 @@ int run_complexity(const CommonOptions& common, const ComplexityOptions& options
     rollbacks += result.rollbacks();
     list.push_back(json_of(result));
     if (options.output.empty()) continue;
-    for (const std::string& file :
-         write_study(result, options.output + "/" + study_file(study), options.plots))
-      files.push_back(file);
+    const std::string base = options.output + "/" + study_file(study);
+    for (const std::string& file : write_study(result, {base, base}, options.plots)) files.push_back(file);
   }
   const std::string verdict =
       text("%s; %ld divergences were seen and undone",

@@ -23,8 +23,8 @@ std::string heading(const StudyResult& result) {
   }
 }
 
-std::string settings_of(const StudyResult& result, const std::string& base) {
-  std::string settings = "data=" + gnuplot_literal(base + "_medians.csv") +
+std::string settings_of(const StudyResult& result, const std::string& data) {
+  std::string settings = "data=" + gnuplot_literal(data + "_medians.csv") +
                          "; heading=" + gnuplot_literal(heading(result)) +
                          "; footer=" + gnuplot_literal(provenance()) +
                          text("; rounds=%d; series=%zu; ", result.rounds, result.series.size());
@@ -40,10 +40,10 @@ std::string settings_of(const StudyResult& result, const std::string& base) {
   return settings;
 }
 
-Json draw_timing_figure(Study study, const std::string& base, const CommonOptions& common,
+Json draw_timing_figure(Study study, const FigureFiles& files, const CommonOptions& common,
                         const FiguresOptions& options) {
   const StudyResult result = run_study(study, options.quick, common);
-  return {{"files", write_study(result, base, options.plots)},
+  return {{"files", write_study(result, files, options.plots)},
           {"holds", result.all_finished()},
           {"summary",
            text("%zu contestants, %d rounds, %s, %ld rollbacks", result.series.size(), result.rounds,
@@ -66,15 +66,15 @@ std::string study_file(Study study) {
   return "complexity_cg_tolerance";
 }
 
-std::vector<std::string> write_study(const StudyResult& result, const std::string& base,
+std::vector<std::string> write_study(const StudyResult& result, const FigureFiles& files,
                                      const std::string& plots) {
-  write_runs(base + ".csv", result);
-  if (result.study == Study::cg_tolerance) return {base + ".csv"};
-  write_medians(base + "_medians.csv", result);
+  write_runs(files.data + ".csv", result);
+  if (result.study == Study::cg_tolerance) return {files.data + ".csv"};
+  write_medians(files.data + "_medians.csv", result);
   const char* script = result.study == Study::time_step ? "/time_step.gp" : "/complexity.gp";
-  std::vector<std::string> files = draw(plots + script, settings_of(result, base), base);
-  files.insert(files.end(), {base + ".csv", base + "_medians.csv"});
-  return files;
+  std::vector<std::string> written = draw(plots + script, settings_of(result, files.data), files.picture);
+  written.insert(written.end(), {files.data + ".csv", files.data + "_medians.csv"});
+  return written;
 }
 
 std::vector<Figure> timing_figures() {
@@ -84,9 +84,9 @@ std::vector<Figure> timing_figures() {
   for (const auto& [study, number] : named)
     figures.push_back({.file = study_file(study),
                        .name = number,
-                       .draw = [study = study](const std::string& base, const CommonOptions& common,
+                       .draw = [study = study](const FigureFiles& files, const CommonOptions& common,
                                                const FiguresOptions& options) {
-                         return draw_timing_figure(study, base, common, options);
+                         return draw_timing_figure(study, files, common, options);
                        }});
   return figures;
 }

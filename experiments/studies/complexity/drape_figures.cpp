@@ -47,29 +47,29 @@ void write_meshes(const std::string& path, const Drape& drape, const std::vector
 }
 
 Json draw_meshes(const Drape& drape, const std::vector<Moment>& moments, const std::string& script,
-                 const std::string& base) {
-  write_meshes(base + ".csv", drape, moments);
-  std::string settings =
-      "data=" + gnuplot_literal(base + ".csv") + text("; side=%d; frames=%zu; ", drape.side, moments.size());
+                 const FigureFiles& files) {
+  write_meshes(files.data + ".csv", drape, moments);
+  std::string settings = "data=" + gnuplot_literal(files.data + ".csv") +
+                         text("; side=%d; frames=%zu; ", drape.side, moments.size());
   for (std::size_t i = 0; i < moments.size(); ++i) settings += text("time_%zu=%.3f; ", i, moments[i].time);
-  std::vector<std::string> files = draw(script, settings, base);
-  files.push_back(base + ".csv");
-  return {{"files", files},
+  std::vector<std::string> written = draw(script, settings, files.picture);
+  written.push_back(files.data + ".csv");
+  return {{"files", written},
           {"holds", true},
           {"summary", text("%d×%d particles by linearized explicit Euler, to %.3g s", drape.side, drape.side,
                            moments.back().time)}};
 }
 
-Json draw_drape(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_drape(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   const Drape drape = tablecloth(options.quick ? 20 : 40);
   const auto moments = moments_of(drape, "linearized-explicit-euler", settled, 1, common);
-  return draw_meshes(drape, {moments.back()}, options.plots + "/drape.gp", base);
+  return draw_meshes(drape, {moments.back()}, options.plots + "/drape.gp", files);
 }
 
-Json draw_frames(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_frames(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   const Drape drape = tablecloth(20);
   const auto moments = moments_of(drape, "linearized-explicit-euler", strip_duration, strip_frames, common);
-  return draw_meshes(drape, moments, options.plots + "/drape_frames.gp", base);
+  return draw_meshes(drape, moments, options.plots + "/drape_frames.gp", files);
 }
 
 struct WatchedDrape {
@@ -134,13 +134,14 @@ Json totals(const std::string& name, const std::vector<K0Sample>& samples) {
 }
 
 // A ratio above the safety factor is a result, shown as such: the watch for divergence is there for it.
-Json draw_k0(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_k0(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   const std::vector<WatchedDrape> drapes = watched_drapes(options.quick ? 10 : 16);
-  OutputFile file(base + ".csv");
+  OutputFile file(files.data + ".csv");
   Json rows = Json::array();
   bool converged = true;
   double highest = 0;
-  std::string settings = "data=" + gnuplot_literal(base + ".csv") + text("; drapes=%zu; ", drapes.size());
+  std::string settings =
+      "data=" + gnuplot_literal(files.data + ".csv") + text("; drapes=%zu; ", drapes.size());
   for (std::size_t i = 0; i < drapes.size(); ++i) {
     const auto moments = moments_of(drapes[i].drape, "symplectic-euler", 1, options.quick ? 10 : 50, common);
     const std::vector<K0Sample> samples = watch_k0(drapes[i].drape, moments, 1e-3, common);
@@ -154,9 +155,9 @@ Json draw_k0(const std::string& base, const CommonOptions& common, const Figures
                 "; ";
   }
   file.commit();
-  std::vector<std::string> files = draw(options.plots + "/k0.gp", settings, base);
-  files.push_back(base + ".csv");
-  return {{"files", files},
+  std::vector<std::string> written = draw(options.plots + "/k0.gp", settings, files.picture);
+  written.push_back(files.data + ".csv");
+  return {{"files", written},
           {"holds", converged},
           {"summary", text("k0 rises to at most %.4g times its value at the start", highest)},
           {"drapes", rows}};

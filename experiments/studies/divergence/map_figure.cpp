@@ -86,15 +86,15 @@ Panel draw_panel(const std::string& base, const StructuralMatrices& s, const std
   return panel;
 }
 
-Json draw_map(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_map(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   Subject subject = damped_net();
   StructureLimits answer(subject.structure(subject.initial_state(common.seed)),
                          {.safety = 1, .seed = common.seed});
   const StructuralMatrices& s = answer.structure().matrices;
   const std::vector<DampedMode> modes = damped_modes(s).value();
 
-  std::string settings = "data=" + gnuplot_literal(base) + text("; steps=%ld; ", map_steps);
-  std::vector<std::string> files;
+  std::string settings = "data=" + gnuplot_literal(files.data) + text("; steps=%ld; ", map_steps);
+  std::vector<std::string> written;
   bool holds = true;
   for (const std::string method : map_methods) {
     const MethodLimits limits = answer.limits(method);
@@ -105,22 +105,23 @@ Json draw_map(const std::string& base, const CommonOptions& common, const Figure
     std::replace(name.begin(), name.end(), '-', '_');
     settings += text("%s_window=\"%.9g %.9g %.9g %.9g\"; ", name.c_str(), window.x_min, window.x_max,
                      window.y_min, window.y_max);
-    write_boundary(base + "_" + method + "_boundary.csv", region, window);
-    write_pieces(base + "_" + method + "_pieces.csv", region, window);
-    for (const char* part : {"_boundary.csv", "_pieces.csv"}) files.push_back(base + "_" + method + part);
+    write_boundary(files.data + "_" + method + "_boundary.csv", region, window);
+    write_pieces(files.data + "_" + method + "_pieces.csv", region, window);
+    for (const char* part : {"_boundary.csv", "_pieces.csv"})
+      written.push_back(files.data + "_" + method + part);
     for (const bool stable : {true, false}) {
       const double h = stable ? limits.h_certified.value_or(0.95 * limit) : above_limit * limit;
       const std::string file = "_" + method + (stable ? "_below" : "_above");
-      const Panel panel = draw_panel(base + file, s, modes, {method, h, h / limit}, common.seed);
+      const Panel panel = draw_panel(files.data + file, s, modes, {method, h, h / limit}, common.seed);
       holds = holds && panel.diverged == !stable && (panel.outside > 0) == !stable;
       settings += text("%s_%s=\"%.6g %.6g %ld %d\"; ", name.c_str(), stable ? "below" : "above", h,
                        panel.ratio, panel.outside, panel.diverged);
-      for (const char* part : {"_modes.csv", "_outline.csv"}) files.push_back(base + file + part);
+      for (const char* part : {"_modes.csv", "_outline.csv"}) written.push_back(files.data + file + part);
     }
   }
-  const std::vector<std::string> drawn = draw(options.plots + "/divergence_map.gp", settings, base);
-  files.insert(files.end(), drawn.begin(), drawn.end());
-  return {{"files", files},
+  const std::vector<std::string> drawn = draw(options.plots + "/divergence_map.gp", settings, files.picture);
+  written.insert(written.end(), drawn.begin(), drawn.end());
+  return {{"files", written},
           {"holds", holds},
           {"summary", text("%zu eigenpairs of a damped net, below and above the limits of %zu methods",
                            modes.size(), std::size(map_methods))}};

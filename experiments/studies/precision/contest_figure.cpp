@@ -102,26 +102,26 @@ std::string reference_table(const std::vector<ContestResult>& results) {
   return table;
 }
 
-std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const std::string& base,
+std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const FigureFiles& files,
                                         const std::string& plots) {
-  std::vector<std::string> files;
+  std::vector<std::string> written;
   std::string settings = text("panels=%zu; repetitions=%d; designed=%d; footer=", results.size(),
                               results.front().options.repetitions, results.front().designed) +
                          gnuplot_literal(provenance()) + "; ";
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const std::string part = results.size() == 1 ? base : base + text("_%zu", i + 1);
+    const std::string part = results.size() == 1 ? files.data : files.data + text("_%zu", i + 1);
     write_runs(part + ".csv", results[i]);
     write_points(part + "_points.csv", results[i]);
-    files.insert(files.end(), {part + ".csv", part + "_points.csv"});
+    written.insert(written.end(), {part + ".csv", part + "_points.csv"});
     settings += settings_of(results[i], part + "_points.csv", i + 1);
   }
   const std::vector<ContestSeries>& series = results.front().series;
   settings += text("series=%zu; ", series.size());
   for (std::size_t i = 0; i < series.size(); ++i)
     settings += text("name_%zu=", i + 1) + gnuplot_literal(series[i].contestant.name) + "; ";
-  const std::vector<std::string> pictures = draw(plots + "/work_precision.gp", settings, base);
-  files.insert(files.end(), pictures.begin(), pictures.end());
-  return files;
+  const std::vector<std::string> pictures = draw(plots + "/work_precision.gp", settings, files.picture);
+  written.insert(written.end(), pictures.begin(), pictures.end());
+  return written;
 }
 
 }  // namespace springstab

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/studies/gnuplot.h"
 #include "experiments/studies/precision/contest.h"
 
 namespace springstab {
@@ -18,9 +19,9 @@ std::string cheapest_table(const std::vector<ContestResult>& results);
 /// Per contest the error of its reference, as published and as the third integrator has it; Markdown.
 std::string reference_table(const std::vector<ContestResult>& results);
 
-/// Writes BASE.csv (or BASE_1.csv, BASE_2.csv ...), the points for gnuplot and the picture: a row of panels
+/// Writes DATA.csv (or DATA_1.csv, DATA_2.csv ...), the points for gnuplot and the picture: a row of panels
 /// per contest, error against CPU seconds and against force evaluation equivalents. Returns the paths.
-std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const std::string& base,
+std::vector<std::string> write_contests(const std::vector<ContestResult>& results, const FigureFiles& files,
                                         const std::string& plots);
 
 }  // namespace springstab

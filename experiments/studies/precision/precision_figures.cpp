@@ -1,5 +1,6 @@
 // Error against run time as figures: a contest a row of panels, and what long runs show.
 #include <algorithm>
+#include <filesystem>
 
 #include "experiments/studies/figure_list.h"
 #include "experiments/studies/gnuplot.h"
@@ -45,7 +46,7 @@ bool holds(const std::vector<ContestResult>& results) {
   });
 }
 
-Json draw_rows(const std::vector<ContestRow>& rows, const std::string& base, const CommonOptions& common,
+Json draw_rows(const std::vector<ContestRow>& rows, const FigureFiles& files, const CommonOptions& common,
                const FiguresOptions& options) {
   std::vector<ContestResult> results;
   double worst = 0;
@@ -53,27 +54,28 @@ Json draw_rows(const std::vector<ContestRow>& rows, const std::string& base, con
     Problem problem = row.problem(common);
     if (row.designed) problem.design_damping();
     const double limit = options.quick ? row.time_limit / 20 : row.time_limit;
-    results.push_back(run_contest(problem, options.output + "/references",
+    results.push_back(run_contest(problem,
+                                  std::filesystem::path(files.data).replace_filename("references").string(),
                                   {.time_limit = limit, .methods = figure_methods()}, common));
     worst = std::max(worst, results.back().reference.error.trajectory);
   }
-  std::vector<std::string> files = write_contests(results, base, options.plots);
-  OutputFile table(base + "_cheapest.md");
+  std::vector<std::string> written = write_contests(results, files, options.plots);
+  OutputFile table(files.data + "_cheapest.md");
   table.stream() << cheapest_table(results) << '\n' << reference_table(results);
   table.commit();
-  files.push_back(base + "_cheapest.md");
-  return {{"files", files},
+  written.push_back(files.data + "_cheapest.md");
+  return {{"files", written},
           {"holds", holds(results)},
           {"summary", text("%zu contests, references good to %.2g", results.size(), worst)}};
 }
 
-Json draw_long_runs(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_long_runs(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   const EnergyDrift energy = energy_drift(options.quick ? 2000 : 50000, common);
   const std::vector<PhaseCurve> phase = phase_errors(common);
-  OutputFile energies(base + "_energy.csv"), phases(base + "_phase.csv");
+  OutputFile energies(files.data + "_energy.csv"), phases(files.data + "_phase.csv");
   std::string settings = text("k0=%.4g; h=%.4g; series=%zu; energies=", energy.k0, energy.h, phase.size()) +
-                         gnuplot_literal(base + "_energy.csv") +
-                         "; phases=" + gnuplot_literal(base + "_phase.csv") + "; ";
+                         gnuplot_literal(files.data + "_energy.csv") +
+                         "; phases=" + gnuplot_literal(files.data + "_phase.csv") + "; ";
   for (std::size_t i = 0; i < energy.curves.size(); ++i) {
     const EnergyCurve& c = energy.curves[i];
     settings += text("name_%zu=", i + 1) + gnuplot_literal(c.name) + "; ";
@@ -89,10 +91,10 @@ Json draw_long_runs(const std::string& base, const CommonOptions& common, const 
   }
   energies.commit();
   phases.commit();
-  std::vector<std::string> files = draw(options.plots + "/long_runs.gp", settings, base);
-  files.insert(files.end(), {base + "_energy.csv", base + "_phase.csv"});
+  std::vector<std::string> written = draw(options.plots + "/long_runs.gp", settings, files.picture);
+  written.insert(written.end(), {files.data + "_energy.csv", files.data + "_phase.csv"});
   const auto diverged = std::ranges::count_if(energy.curves, &EnergyCurve::diverged);
-  return {{"files", files},
+  return {{"files", written},
           {"holds", true},
           {"summary", text("%td of %zu methods diverge undamped", diverged, energy.curves.size())}};
 }
@@ -100,9 +102,9 @@ Json draw_long_runs(const std::string& base, const CommonOptions& common, const 
 Figure contests(const std::string& name, std::vector<ContestRow> rows) {
   return {.file = "work_precision_" + name,
           .name = "precision-" + name,
-          .draw = [rows = std::move(rows)](const std::string& base, const CommonOptions& common,
+          .draw = [rows = std::move(rows)](const FigureFiles& files, const CommonOptions& common,
                                            const FiguresOptions& options) {
-            return draw_rows(rows, base, common, options);
+            return draw_rows(rows, files, common, options);
           }};
 }
 

@@ -123,10 +123,11 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
       run_contest(problem, options.output.empty() ? "" : options.output + "/references",
                   {options.time_limit, options.repetitions, options.libraries, methods}, common, journal);
   Json files = Json::array();
-  if (!options.output.empty())
-    for (const std::string& file :
-         write_contests({result}, options.output + "/work_precision", options.plots))
+  if (!options.output.empty()) {
+    const std::string base = options.output + "/work_precision";
+    for (const std::string& file : write_contests({result}, {base, base}, options.plots))
       files.push_back(file);
+  }
 
   if (common.json) {
     print_json(json_of(result, files));

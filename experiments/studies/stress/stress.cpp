@@ -106,10 +106,10 @@ void print(const std::vector<StressResult>& results) {
   }
 }
 
-Json draw_stress(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_stress(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   const std::vector<StressResult> results = run_catalogue("", common);
-  write_stress(base + ".csv", results);
-  OutputFile points(base + "_points.csv");
+  write_stress(files.data + ".csv", results);
+  OutputFile points(files.data + "_points.csv");
   const std::size_t methods = all_methods().size();
   points.stream() << "# case;method;outcome;as_expected;label\n";
   for (std::size_t i = 0; i < results.size(); ++i)
@@ -117,13 +117,13 @@ Json draw_stress(const std::string& base, const CommonOptions& common, const Fig
                     << results[i].as_expected() << ';' << results[i].kind << ": " << results[i].name << '\n';
   points.commit();
   std::string settings = text("cases=%zu; methods=%zu; data=", results.size() / methods, methods) +
-                         gnuplot_literal(base + "_points.csv") +
+                         gnuplot_literal(files.data + "_points.csv") +
                          "; summary=" + gnuplot_literal(summary(results)) + "; ";
   for (std::size_t i = 0; i < methods; ++i)
     settings += text("method_%zu=", i) + gnuplot_literal(all_methods()[i].info().title) + "; ";
-  std::vector<std::string> files = draw(options.plots + "/stress.gp", settings, base);
-  files.insert(files.end(), {base + ".csv", base + "_points.csv"});
-  return {{"files", files}, {"holds", unexpected(results) == 0}, {"summary", summary(results)}};
+  std::vector<std::string> written = draw(options.plots + "/stress.gp", settings, files.picture);
+  written.insert(written.end(), {files.data + ".csv", files.data + "_points.csv"});
+  return {{"files", written}, {"holds", unexpected(results) == 0}, {"summary", summary(results)}};
 }
 
 }  // namespace

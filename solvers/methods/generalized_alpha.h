@@ -15,7 +15,7 @@ struct GeneralizedAlpha {
   explicit GeneralizedAlpha(Parameters& given) : rho(given.number("rho", 0.8)), name(given.text()) {
     given.require(rho > -1 && rho < 2, "rho between -1 and 2");
   }
-  MethodInfo info() const { return {name, "generalized-α", 2, true, false, 1}; }
+  MethodInfo info() const { return {name, with_values("generalized-α", {{"ρ∞", rho}}), 2, true, false, 1}; }
 
   AlphaWeights weights() const {
     const double mass = (2 * rho - 1) / (rho + 1), force = rho / (rho + 1), shift = 1 - mass + force;

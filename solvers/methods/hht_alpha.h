@@ -16,7 +16,7 @@ struct HhtAlpha {
   explicit HhtAlpha(Parameters& given) : alpha(given.number("alpha", -0.1)), name(given.text()) {
     given.require(alpha > -1 && alpha < 0.5, "alpha between -1 and 0.5");
   }
-  MethodInfo info() const { return {name, "HHT-α", 2, true, false, 1}; }
+  MethodInfo info() const { return {name, with_values("HHT-α", {{"α", alpha}}), 2, true, false, 1}; }
 
   template <class V>
   struct Steps : OneStepAlpha<V> {

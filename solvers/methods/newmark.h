@@ -26,7 +26,9 @@ struct Newmark {
     gamma = given.number("gamma", gamma);
     given.require(beta >= 0 && gamma >= 0, "beta and gamma that are not negative");
   }
-  MethodInfo info() const { return {name, "Newmark", gamma == 0.5 ? 2 : 1, true, false, 1}; }
+  MethodInfo info() const {
+    return {name, with_values("Newmark", {{"β", beta}, {"γ", gamma}}), gamma == 0.5 ? 2 : 1, true, false, 1};
+  }
 
   template <class V>
   struct Steps : OneStepAlpha<V> {

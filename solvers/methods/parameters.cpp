@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 namespace springstab {
@@ -79,6 +80,16 @@ const std::string* Parameters::find(std::string_view key) {
 
 void Parameters::refuse(const std::string& what) const {
   throw std::invalid_argument("method '" + text_ + "': " + what);
+}
+
+std::string with_values(std::string title,
+                        std::initializer_list<std::pair<std::string_view, double>> values) {
+  for (const auto& [name, value] : values) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.4g", value);
+    title.append(", ").append(name).append(" = ").append(digits);
+  }
+  return title;
 }
 
 }  // namespace springstab

@@ -1,13 +1,14 @@
 // What a method is given beside its name, as "newmark:beta=0.25,gamma=0.5" on the command line.
 //
 //     Parameters given("newmark:beta=0.25");
-//     given.number("beta", 0.25), given.number("gamma", 0.5);   // the second is the value where none is
-//     given given.check_all_asked_for();                              // a key that nobody asked for is an
-//     error
+//     given.number("beta", 0.25);     // 0.25
+//     given.number("gamma", 0.5);     // 0.5, since none is given
+//     given.check_all_asked_for();    // a key that nobody asked for is an error
 //
 // Depends on the standard library alone.
 #pragma once
 
+#include <initializer_list>
 #include <set>
 #include <string>
 #include <string_view>
@@ -41,5 +42,8 @@ class Parameters {
   std::vector<std::pair<std::string, std::string>> values_;
   std::set<std::string, std::less<>> asked_for_;
 };
+
+/// "Newmark, β = 0.25, γ = 0.5": a method's title with the values it has, given ones or not.
+std::string with_values(std::string title, std::initializer_list<std::pair<std::string_view, double>> values);
 
 }  // namespace springstab

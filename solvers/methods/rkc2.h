@@ -22,7 +22,11 @@ struct Rkc2 {
     given.require(stages >= 2 && stages <= 200, "between 2 and 200 stages");
   }
   MethodInfo info() const {
-    return {.name = name, .title = "RKC2", .order = 2, .implicit = false, .regions_by_values = stages > 3};
+    return {.name = name,
+            .title = with_values("RKC2", {{"s", static_cast<double>(stages)}}),
+            .order = 2,
+            .implicit = false,
+            .regions_by_values = stages > 3};
   }
 
   struct Stage {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/method.h"
+#include "experiments/command/optional_parts.h"
 #include "experiments/runs/measured_run.h"
 
 namespace springstab {
@@ -151,7 +152,8 @@ Json explain(Subject& subject, std::string_view method, const StepPlan& plan, co
           {"pinned", scene.particles() - scene.free_particles()},
           {"steps_tried", steps},
           {"parts", parts},
-          {"left_out", left_out(subject, scene, counts.hessian_assemblies > 0)}};
+          {"left_out", left_out(subject, scene, counts.hessian_assemblies > 0)},
+          {"built", optional_parts_text()}};
 }
 
 std::string explanation_table(const Json& e) {

@@ -16,6 +16,7 @@
 #include "experiments/limits_words.h"
 #include "solvers/cpu_time.h"
 #include "solvers/io/input_error.h"
+#include "solvers/team.h"
 
 namespace springstab {
 namespace {
@@ -268,6 +269,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                                                 .max_step = options.max_step});
 
   std::vector<Row> rows;
+  set_loop_threads(common.threads);
   std::optional<Waiting> waiting(std::in_place, "limits", common.quiet);
   waiting->now("k0");
   int status = answer.k0().converged ? done : no_answer;
@@ -278,7 +280,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
-  // Measured, and not the same every time: no program gets it unasked.
+  // Measured, on one thread, and not the same every time: no program gets it unasked.
+  set_loop_threads(1);
   const CheapestOptions asked = cheapest_options(options, cpu_seconds() - begin);
   std::optional<CheapestMethod> cheapest;
   if (!common.json || options.error || options.frame_rate) {

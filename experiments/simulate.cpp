@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "analysis/constants.h"
 #include "experiments/command/interrupt.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
@@ -18,6 +19,7 @@
 #include "experiments/simulate_to_error.h"
 #include "solvers/io/input_error.h"
 #include "solvers/simulation.h"
+#include "solvers/team.h"
 
 namespace springstab {
 namespace {
@@ -125,6 +127,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   const bool resumed = !others.is_null();
   if (resumed) go_on(chooser, others.at("chooser"));
   if (resumed && !common.quiet) std::cerr << text("springstab: going on at t = %.6g s\n", begin.run.time);
+  set_loop_threads(common.threads);  // what was measured before is for one
   recorder.emplace(subject, options, resumed ? others.at("recorder") : Json());
   CountingSystem counted(subject.system(), resumed ? counts_of(others.at("counts")) : Counts());
   const double cpu_before = cpu_seconds() - (resumed ? others.at("cpu_seconds").get<double>() : 0);
@@ -132,6 +135,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   const auto stepper = Method(options.method).stepper();
   if (subject.scene()) stepper->set_newton({.steps = options.newton});
   if (!resumed) stepper->start(counted, plan.h, course.end);
+  const long steps_a_look = subject.system().size() > many_unknowns ? 1 : 64;
   Progress progress("simulating", common.quiet);
   course.result = resume_simulation(
       counted, *stepper, std::move(begin.run), course.watch, course.end,
@@ -147,7 +151,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
                      {"counts", json_of(counted.counts())},
                      {"cpu_seconds", cpu_seconds() - cpu_before}}};
           });
-        if (so_far.steps % 64 == 0) progress.update(so_far.time / options.duration);
+        if (so_far.steps % steps_a_look == 0) progress.update(so_far.time / options.duration);
         return !interrupt.requested();
       },
       chooser.policy());

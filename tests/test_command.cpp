@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "analysis/proofs/sparse_cholesky.h"
 #include "tests/command.h"
 
 BOOST_FIXTURE_TEST_SUITE(command, springstab::test::Command)
@@ -682,7 +683,13 @@ BOOST_AUTO_TEST_CASE(help_has_examples_and_version_is_a_number) {
     BOOST_TEST(help.out.find("example") != std::string::npos);
   }
   int major, minor, patch;
-  BOOST_TEST(std::sscanf((*this)("--version").out.c_str(), "%d.%d.%d", &major, &minor, &patch) == 3);
+  const std::string version = (*this)("--version").out;
+  BOOST_TEST(std::sscanf(version.c_str(), "%d.%d.%d", &major, &minor, &patch) == 3);
+  const std::string cholmod = springstab::has_cholmod() ? "with CHOLMOD" : "without CHOLMOD";
+  BOOST_TEST(version.find("\n" + cholmod) != std::string::npos);
+  const std::string run = "simulate --grid 3x3 --method rk4 --step 1e-3 --duration 0.01 --explain --json";
+  const Json built = (*this)(run).json().at("explanation").at("built");
+  BOOST_TEST(built.get<std::string>().starts_with(cholmod));
 }
 
 BOOST_AUTO_TEST_CASE(work_precision_reports_errors_costs_and_what_the_reference_is_worth) {

@@ -135,6 +135,17 @@ BOOST_AUTO_TEST_CASE(runs_are_the_same_every_time, *boost::unit_test::label("slo
   expect_same_bytes(*this, "simulate --stiffness chain.mtx --method rk4 --duration 1 --json --output out", 1);
 }
 
+// Large enough for their loops to be shared, and neither two nor three divide the particles.
+BOOST_AUTO_TEST_CASE(large_runs_do_not_depend_on_threads) {
+  const std::string grid =
+      "simulate --grid 71x67 --pin first-row --json --output out --step 1e-4 --frames 3 ";
+  for (const char* method : {"symplectic-euler", "linearized-rk4", "implicit-euler"})
+    expect_same_bytes(*this, grid + "--duration 0.003 --method " + method, 4);
+  expect_same_bytes(*this,
+                    grid + "--duration 0.001 --material baraff-witkin --method linearized-explicit-euler", 4);
+  expect_same_bytes(*this, "limits --grid 84x84 --pin first-row --method symplectic-euler --json", 0);
+}
+
 BOOST_AUTO_TEST_CASE(stress_cases_come_out_the_same_every_time) {
   expect_same_bytes(*this, "stress --filter impulse --json --output out", 1);
 }

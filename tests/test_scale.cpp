@@ -9,8 +9,10 @@
 #include "analysis/constants.h"
 #include "analysis/proofs/definiteness.h"
 #include "analysis/spectra/lanczos.h"
+#include "analysis/spectra/rigid_motions.h"
 #include "analysis/spectra/spectrum.h"
 #include "analysis/structure_limits.h"
+#include "solvers/team.h"
 #ifdef SPRINGSTAB_CHOLMOD
 #include "analysis/proofs/pieces.h"
 #endif
@@ -126,6 +128,39 @@ BOOST_AUTO_TEST_CASE(what_is_not_finite_has_no_factorization) {
   }
 }
 
+// A flat net: what it resists sideways is rounding. Above the crossover a factorization by blocks tells.
+BOOST_AUTO_TEST_CASE(motions_that_rounding_alone_resists_are_held_at_any_size) {
+  for (const int n : {99, 100, 101, 102}) {
+    const SparseMatrix net = membrane(n);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (Eigen::Index j = 0; j < net.cols(); ++j) {
+      for (SparseMatrix::InnerIterator it(net, j); it; ++it)
+        entries.emplace_back(2 * it.row(), 2 * j, it.value());
+      if (j % 3 != 0) entries.emplace_back(2 * j + 1, 2 * j + 1, (j % 3 == 1 ? 1 : -1) * eps);
+    }
+    SparseMatrix flat(2 * net.rows(), 2 * net.cols());
+    flat.setFromTriplets(entries.begin(), entries.end());
+    const StructuralMatrices rest = without_rigid_motions(prepare(flat));
+    BOOST_TEST(rest.size() == net.rows(), n);
+    BOOST_TEST((rest.stiffness - net).norm() == 0);
+  }
+}
+
+BOOST_AUTO_TEST_CASE(products_of_many_unknowns_are_the_same_bits_with_any_number_of_threads) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  const LinearOperator op = symmetric_operator(membrane(201, 0.7));
+  Eigen::VectorXd in(op.size), one, out;
+  for (double& u : in) u = normal(random) * std::exp(5 * normal(random));
+  op.apply(in, one);
+  for (const int count : {2, 3, 5}) {
+    set_loop_threads(count);
+    op.apply(in, out);
+    BOOST_TEST((out.array() == one.array()).all(), count);
+  }
+  set_loop_threads(1);
+}
+
 BOOST_AUTO_TEST_CASE(few_digits_of_k0_are_right_to_them_and_never_above) {
   for (const int n : {60, 142}) {
     const StructuralMatrices s = prepare(membrane(n));
@@ -230,6 +265,30 @@ BOOST_AUTO_TEST_CASE(pieces_prove_what_is_true_with_a_loss_that_overlap_makes_sm
   SparseMatrix bad = shifted(even, 2 * k0);
   bad.coeffRef(5, 5) = std::nan("");
   BOOST_TEST(!Pieces(even, 2500, 4).prove(bad));
+}
+
+// The least σ that is proved, to the last of sixteen halvings.
+BOOST_AUTO_TEST_CASE(pieces_prove_as_much_with_any_number_of_threads) {
+  const int n = 150;
+  const SparseMatrix a = membrane(n);
+  const Pieces pieces(a, 2500, 6);
+  BOOST_TEST(pieces.count() >= 5);
+  const auto least_loss = [&] {
+    double failed = 0, proved = 0.1;
+    for (int halving = 0; halving < 16; ++halving) {
+      const double middle = (failed + proved) / 2;
+      (pieces.prove(shifted(a, membrane_k0(n) * (1 + middle))) ? proved : failed) = middle;
+    }
+    return proved;
+  };
+  const double one = least_loss();
+  BOOST_TEST(one > 1e-4);
+  BOOST_TEST(one < 0.05);
+  for (const int count : {2, 3}) {
+    set_loop_threads(count);
+    BOOST_TEST(least_loss() == one, count);
+  }
+  set_loop_threads(1);
 }
 
 BOOST_AUTO_TEST_CASE(one_piece_loses_nothing) {

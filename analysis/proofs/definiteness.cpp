@@ -86,7 +86,9 @@ bool DefinitenessProof::holds(double c, double a, double b) {
 }
 
 bool DefinitenessProof::stiffness_is_semidefinite() {
-  return stiffness_.nonZeros() == 0 || cholesky_.factorize(lifted(sum(0, 0, -1)));
+  if (!stiffness_is_semidefinite_)
+    stiffness_is_semidefinite_ = stiffness_.nonZeros() == 0 || cholesky_.factorize(lifted(sum(0, 0, -1)));
+  return *stiffness_is_semidefinite_;
 }
 
 bool is_semidefinite(const SparseMatrix& a, const SparseMatrix& mass) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "analysis/proofs/sparse_cholesky.h"
 #include "solvers/linear/structural_matrices.h"
@@ -27,7 +28,7 @@ class DefinitenessProof {
   /// Into how many pieces; 0 where none was needed so far.
   int pieces() const;
 
-  /// Whether K has no eigenvalue below zero but for rounding: see is_semidefinite.
+  /// Whether K has no eigenvalue below zero but for rounding: see is_semidefinite. Found out once.
   bool stiffness_is_semidefinite();
 
  private:
@@ -38,6 +39,7 @@ class DefinitenessProof {
   Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
   SparseCholesky cholesky_;
   double loss_;
+  std::optional<bool> stiffness_is_semidefinite_;
   std::shared_ptr<const Pieces> pieces_;
 };
 

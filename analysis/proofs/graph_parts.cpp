@@ -3,6 +3,7 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <mutex>
 #include <stdexcept>
 #include <type_traits>
 
@@ -10,6 +11,10 @@ namespace springstab {
 namespace {
 
 static_assert(std::is_same_v<idx_t, int>, "METIS with 32-bit indices");
+
+// METIS draws from rand(), which it seeds anew at each call: one call at a time, lest two threads share a
+// sequence and get others each time.
+std::mutex one_call;
 
 // METIS takes what it only reads as not constant.
 idx_t* pointer(const std::vector<int>& v) { return const_cast<idx_t*>(v.data()); }
@@ -40,6 +45,7 @@ std::vector<long> dissection_order(const Eigen::SparseMatrix<double>& a) {
   const int together = graph.unknowns_a_node;
   idx_t nodes = graph.size();
   std::vector<int> order(nodes), place(nodes);
+  const std::lock_guard alone(one_call);
   if (METIS_NodeND(&nodes, pointer(graph.start), pointer(graph.neighbour), nullptr, nullptr, order.data(),
                    place.data()) != METIS_OK)
     return {};
@@ -53,6 +59,7 @@ std::vector<long> dissection_order(const Eigen::SparseMatrix<double>& a) {
 std::vector<int> parts_of(const Graph& graph, int parts) {
   idx_t nodes = graph.size(), constraints = 1, number = parts, cut = 0;
   std::vector<int> part(nodes, 0);
+  const std::lock_guard alone(one_call);
   if (parts > 1 && METIS_PartGraphKway(&nodes, &constraints, pointer(graph.start), pointer(graph.neighbour),
                                        nullptr, nullptr, nullptr, &number, nullptr, nullptr, nullptr, &cut,
                                        part.data()) != METIS_OK)

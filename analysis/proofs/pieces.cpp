@@ -1,11 +1,14 @@
 #include "analysis/proofs/pieces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <new>
 #include <numbers>
 
 #include "analysis/constants.h"
 #include "analysis/proofs/sparse_cholesky.h"
+#include "solvers/team.h"
 
 namespace springstab {
 namespace {
@@ -86,33 +89,48 @@ Eigen::VectorXd Pieces::off_pieces(const SparseMatrix& q) const {
   return sum * (1 + 1e-10);  // of up to 10^5 terms a row
 }
 
-bool Pieces::prove(const SparseMatrix& q) const {
-  const Eigen::VectorXd off = off_pieces(q), diagonal = q.diagonal();
-  if (!off.allFinite() || !((diagonal - off).minCoeff() > 0)) return false;
-  std::vector<int> place(q.rows(), -1);
-  for (const std::vector<int>& nodes : nodes_) {
-    std::vector<Eigen::Index> unknowns;
-    for (const int node : nodes)
-      for (int k = 0; k < unknowns_a_node_; ++k)
-        unknowns.push_back(static_cast<Eigen::Index>(unknowns_a_node_) * node + k);
-    for (std::size_t k = 0; k < unknowns.size(); ++k) place[unknowns[k]] = static_cast<int>(k);
-    const auto size = static_cast<Eigen::Index>(unknowns.size());
-    SparseMatrix piece(size, size);
-    for (Eigen::Index k = 0; k < size; ++k) {
-      piece.startVec(k);
-      for (SparseMatrix::InnerIterator it(q, unknowns[k]); it; ++it)
-        if (const int row = place[it.row()]; row >= 0) piece.insertBack(row, k) = it.value();
-    }
-    piece.finalize();
-    for (const Eigen::Index unknown : unknowns) place[unknown] = -1;
-    SparseCholesky cholesky;
-    if (!cholesky.analyze(piece)) return false;
-    const double error = cholesky.error() + 4 * unit_roundoff;
-    for (Eigen::Index k = 0; k < size; ++k)
-      piece.coeffRef(k, k) -= off[unknowns[k]] + error * diagonal[unknowns[k]];
-    if (!cholesky.factorize(piece)) return false;
+// Whether the principal submatrix of q - diag(less) on a piece is positive definite, but for the rounding of
+// its own factorization. `place`: -1 for each unknown, before and after.
+bool Pieces::prove_piece(const SparseMatrix& q, const Eigen::VectorXd& less, int piece,
+                         std::vector<int>& place) const {
+  std::vector<Eigen::Index> unknowns;
+  for (const int node : nodes_[piece])
+    for (int k = 0; k < unknowns_a_node_; ++k)
+      unknowns.push_back(static_cast<Eigen::Index>(unknowns_a_node_) * node + k);
+  for (std::size_t k = 0; k < unknowns.size(); ++k) place[unknowns[k]] = static_cast<int>(k);
+  const auto size = static_cast<Eigen::Index>(unknowns.size());
+  SparseMatrix part(size, size);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    part.startVec(k);
+    for (SparseMatrix::InnerIterator it(q, unknowns[k]); it; ++it)
+      if (const int row = place[it.row()]; row >= 0) part.insertBack(row, k) = it.value();
   }
-  return true;
+  part.finalize();
+  for (const Eigen::Index unknown : unknowns) place[unknown] = -1;
+  SparseCholesky cholesky;
+  if (!cholesky.analyze(part)) return false;
+  const double error = cholesky.error() + 4 * unit_roundoff;
+  for (Eigen::Index k = 0; k < size; ++k)
+    part.coeffRef(k, k) -= less[unknowns[k]] + error * q.coeff(unknowns[k], unknowns[k]);
+  return cholesky.factorize(part);
+}
+
+// The verdict does not depend on who fails first.
+bool Pieces::prove(const SparseMatrix& q) const {
+  const Eigen::VectorXd off = off_pieces(q);
+  if (!off.allFinite() || !((q.diagonal() - off).minCoeff() > 0)) return false;
+  std::atomic<bool> all{true};
+  const int parts = std::min(loop_threads(), count());
+  share(parts, [&](int part) {
+    try {
+      std::vector<int> place(q.rows(), -1);
+      for (int piece = part; piece < count() && all; piece += parts)
+        if (!prove_piece(q, off, piece, place)) all = false;
+    } catch (const std::bad_alloc&) {
+      all = false;  // not proved
+    }
+  });
+  return all;
 }
 
 }  // namespace springstab

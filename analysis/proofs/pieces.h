@@ -20,7 +20,8 @@ class Pieces {
   Pieces(const SparseMatrix& pattern, int particles, int layers);
 
   int count() const { return static_cast<int>(nodes_.size()); }
-  /// Whether `q`, of that graph, is proved to be positive definite, rounding included.
+  /// Whether `q`, of that graph, is proved to be positive definite, rounding included. Threads share the
+  /// pieces (solvers/team.h).
   bool prove(const SparseMatrix& q) const;
 
  private:
@@ -30,6 +31,8 @@ class Pieces {
   };
   double shared(int i, int j) const;  // g_ij
   Eigen::VectorXd off_pieces(const SparseMatrix& q) const;
+  bool prove_piece(const SparseMatrix& q, const Eigen::VectorXd& less, int piece,
+                   std::vector<int>& place) const;
 
   int unknowns_a_node_;
   std::vector<std::vector<int>> nodes_;       // of each piece, ascending

@@ -133,7 +133,9 @@ StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
     for (Eigen::Index i = 0; i < s.size(); ++i)
       if (moves(i)) place[i] = size++;
   };
-  keep([&](Eigen::Index i) { return sum.diagonal()[i] > 0; });
+  // A pivot is at most the diagonal's entry: what is rounding there, as sideways in a flat net, is held.
+  const Eigen::VectorXd diagonal = sum.diagonal();
+  keep([&](Eigen::Index i) { return diagonal[i] > noise[i]; });
   if (!is_above(rows_and_columns(sum, place, size), noise, place)) {
     const std::vector<bool> moving = Pivots(sum, noise).moving();
     keep([&](Eigen::Index i) { return moving[i]; });

@@ -9,6 +9,7 @@
 
 #include "analysis/method.h"
 #include "experiments/command/interrupt.h"
+#include "experiments/command/optional_parts.h"
 #include "experiments/command/subcommand_list.h"
 #include "experiments/command/words.h"
 #include "experiments/inputs/method_file.h"
@@ -88,15 +89,18 @@ void add(CLI::App& app, const Option& option) {
 }
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
-  app.set_version_flag("--version", SPRINGSTAB_VERSION);
+  app.set_version_flag("--version", SPRINGSTAB_VERSION "\n" + optional_parts_text());
   app.add_flag("--json", common.json, "one JSON document on stdout");
   app.add_flag("--quiet", common.quiet, "no progress on stderr");
   app.add_option("--seed", common.seed, "of everything random")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--threads", common.threads, "for the X-Y planes of region, divergence and figures")
+  app.add_option(
+         "--threads", common.threads,
+         "of simulate's loops and of the X-Y planes of region, divergence and figures; what comes out "
+         "does not depend on it")
       ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+      ->default_str("all cores");
   app.add_option("--method-file", common.method_file,
                  "a method from a JSON file, for every subcommand that names or lists methods")
       ->type_name("F.json");

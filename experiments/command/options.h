@@ -1,9 +1,11 @@
 // What every subcommand of `springstab` is told, and how it answers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 #include <string>
+#include <thread>
 
 namespace springstab {
 
@@ -12,7 +14,7 @@ struct CommonOptions {
   bool json = false;
   bool quiet = false;
   std::uint64_t seed = 1;
-  int threads = 1;
+  int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   std::string method_file{};      // its method is known by then
   std::set<std::string> given{};  // names of the subcommand's options that were typed, as "--nx"
 };

@@ -228,15 +228,32 @@ Progress::~Progress() {
   if (shown_) std::cerr << "\r\033[K" << std::flush;
 }
 
+namespace {
+
+std::string time_left(double seconds) {
+  const long s = std::lround(seconds);
+  if (s < 100) return text("%ld s", s);
+  if (s < 6000) return text("%ld min", (s + 30) / 60);
+  return text("%ld h %02ld min", s / 3600, s % 3600 / 60);
+}
+
+}  // namespace
+
 void Progress::update(double fraction) {
   if (!enabled_) return;
+  if (!first_) first_ = fraction;
   const auto now = std::chrono::steady_clock::now();
   if (now - start_ < std::chrono::seconds(1) || now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
   shown_ = true;
   const int filled = static_cast<int>(30 * fraction);
   std::cerr << '\r' << label_ << " [" << std::string(filled, '#') << std::string(30 - filled, ' ') << "] "
-            << static_cast<int>(100 * fraction) << " %" << std::flush;
+            << static_cast<int>(100 * fraction) << " %";
+  if (fraction > *first_) {
+    const std::chrono::duration<double> elapsed = now - start_;
+    std::cerr << ", " << time_left(elapsed.count() * (1 - fraction) / (fraction - *first_)) << " left";
+  }
+  std::cerr << "\033[K" << std::flush;
 }
 
 }  // namespace springstab

@@ -119,6 +119,7 @@ class Progress {
  private:
   std::string label_;
   bool enabled_, shown_ = false;
+  std::optional<double> first_;  // fraction, of what goes on from an earlier run
   std::chrono::steady_clock::time_point start_, last_;
 };
 

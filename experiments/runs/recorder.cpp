@@ -6,6 +6,7 @@
 
 #include "experiments/runs/frames.h"
 #include "solvers/io/input_error.h"
+#include "solvers/team.h"
 
 namespace springstab {
 namespace {
@@ -102,7 +103,15 @@ void Recorder::record_last() {
 void Recorder::write(double t, const State<Vector>& state) {
   const std::uintmax_t begin = csv_bytes_;
   if (subject_.scene()) {
-    write_frame(options_.output, options_.format, written(), subject_.vertices(state.x), subject_.faces());
+    wait_for_frame();
+    auto save = [this, frame = written(), positions = subject_.vertices(state.x)] {
+      write_frame(options_.output, options_.format, frame, positions, subject_.faces());
+    };
+    if (loop_threads() > 1) {
+      writing_ = std::async(std::launch::async, std::move(save));
+    } else {
+      save();
+    }
   } else {
     std::string row = text("%.17g,%.17g,%.17g", t, subject_.system().kinetic_energy(state.v),
                            subject_.system().potential_energy(state.x));
@@ -113,11 +122,17 @@ void Recorder::write(double t, const State<Vector>& state) {
   most_ = std::max(most_, written());
 }
 
+void Recorder::wait_for_frame() {
+  if (writing_.valid()) writing_.get();
+}
+
 void Recorder::flush() {
+  wait_for_frame();
   if (csv_) csv_->keep();
 }
 
 Json Recorder::kept() {
+  wait_for_frame();
   Json frames = Json::array();
   for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due, frame.begin});
   Json kept{{"frames", frames}, {"due", due_}, {"most", most_}};
@@ -132,6 +147,7 @@ Json Recorder::kept() {
 }
 
 void Recorder::finish() {
+  wait_for_frame();
   if (csv_) csv_->commit();
   for (int frame = written(); frame < most_; ++frame)  // of what was undone and not reached again
     remove_frame(options_.output, options_.format, frame);

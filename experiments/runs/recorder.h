@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@
 
 namespace springstab {
 
-/// Evenly spaced in time; nothing without an output folder.
+/// Evenly spaced in time; nothing without an output folder. A frame is written while the run goes on, where
+/// it may have a thread of its own (loop_threads); then it is from the next call on that an error shows.
 class Recorder {
  public:
   /// Goes on after what another one kept(), if that is not null.
@@ -42,6 +44,7 @@ class Recorder {
   void remember(double t, const State<Vector>& state);
   void write(double t, const State<Vector>& state);
   void write_row(const std::string& row);
+  void wait_for_frame();
 
   // A hair early: the time of a step is a rounded sum.
   double next_time() const { return options_.duration * due_ / options_.frames * (1 - 1e-9); }
@@ -65,6 +68,7 @@ class Recorder {
   };
   std::deque<Moment> last_;  // if they are to be kept, in the order of time
   int last_steps_ = 0;       // of these, recorded
+  std::future<void> writing_;
 };
 
 }  // namespace springstab

@@ -25,7 +25,7 @@ void BlockLinearSystem::acceleration(const Vector& x, const Vector& v, Vector& o
     product_.resize(size());
     own_damping_->multiply(v.data(), product_.data());
   }
-  stiffness_.multiply_rows(in->data(), [&](long i, Eigen::Vector3d force) {
+  stiffness_.share_rows(in->data(), [&](long i, Eigen::Vector3d force) {
     if (own_damping_) force += product_.segment<3>(3 * i);
     out.segment<3>(3 * i) = -inverse_mass_[i] * force - d0 * v.segment<3>(3 * i);
   });
@@ -33,7 +33,7 @@ void BlockLinearSystem::acceleration(const Vector& x, const Vector& v, Vector& o
 
 void BlockLinearSystem::stiffness_times(const Vector& u, Vector& out) {
   out.resize(size());
-  stiffness_.multiply_rows(u.data(), [&](long i, const Eigen::Vector3d& force) {
+  stiffness_.share_rows(u.data(), [&](long i, const Eigen::Vector3d& force) {
     out.segment<3>(3 * i) = inverse_mass_[i] * force;
   });
 }

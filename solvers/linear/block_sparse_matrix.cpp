@@ -9,12 +9,29 @@ BlockSparseMatrix::BlockSparseMatrix(SharedPattern pattern)
   sum_.setZero(4 * static_cast<long>(rows()));
 }
 
-void BlockSparseMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
+void BlockSparseMatrix::set_zero() {
+  constexpr double number_cost = 0.3;  // [ns]
+  share_range(static_cast<long>(value_.size()), number_cost,
+              [&](long first, long last) { std::fill(value_.begin() + first, value_.begin() + last, 0.0); });
+}
 
 void BlockSparseMatrix::multiply(const double* in, double* out) const {
-  multiply_rows(in, [&](int i, const Eigen::Vector3d& y) {
+  share_rows(in, [&](int i, const Eigen::Vector3d& y) {
     Eigen::Map<Eigen::Vector3d>(out + 3 * static_cast<long>(i)) = y;
   });
+}
+
+// As multiply_rows would.
+void BlockSparseMatrix::add_from_below(const double* in, const RowPart& part) const {
+  for (const RowPart::Below& below : part.below) {
+    const double* const u = in + 3 * static_cast<long>(below.row);
+    for (long k = below.last; k-- > below.first;) {
+      const double* const b = value_.data() + 9 * k;
+      const Four r0 = ConstFourAt(b), r1 = ConstFourAt(b + 3), r2 = ConstFourAt(b + 6);
+      FourAt to(sum_.data() + 4 * static_cast<long>(column(k)));
+      to += r0 * Four::Constant(u[0]) + r1 * Four::Constant(u[1]) + r2 * Four::Constant(u[2]);
+    }
+  }
 }
 
 Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {

@@ -10,6 +10,7 @@
 
 #include "solvers/linear/block_pattern.h"
 #include "solvers/linear/four.h"
+#include "solvers/linear/row_parts.h"
 
 namespace springstab {
 
@@ -45,13 +46,16 @@ class BlockSparseMatrix {
   void set_zero();
 
   /// out = A in; both of length 3·rows(), not overlapping. Moves 76 bytes per block and 120 per row. Not for
-  /// two threads at a time: it works in memory of the matrix's own.
+  /// two callers at a time: it works in memory of the matrix's own.
   void multiply(const double* in, double* out) const;
 
   /// The same, row by row from the last to the first: take(i, y) gets the three numbers of row i, so that
   /// what is done with the product needs no further pass over memory.
   template <class Take>
   void multiply_rows(const double* in, const Take& take) const;
+  /// The same, where it is worth it with the rows divided among threads (solvers/team.h), which take at once.
+  template <class Take>
+  void share_rows(const double* in, const Take& take) const;
 
   /// Both triangles.
   Eigen::SparseMatrix<double> to_sparse() const;
@@ -60,14 +64,21 @@ class BlockSparseMatrix {
   SharedPattern pattern_;
   std::vector<double> value_;    // 9 per block, and one to read beyond the last
   mutable Eigen::VectorXd sum_;  // of a product, what the rows below have added: 4 per row, zeros in between
+  mutable RowParts parts_;
+
+  enum class Above { within, beyond };  // whether rows have blocks in the columns before their own part
+  template <Above above, class Take>
+  void multiply_rows(const double* in, const IndexRange& rows, long first_column, const Take& take) const;
+  void add_from_below(const double* in, const RowPart& part) const;
 };
 
 // Block (i, j) serves row i and, transposed, row j, to which the rows below have added all they have by the
 // time it is its turn. Blocks are read by rows of four numbers, of which the last belongs to what follows:
 // its product is dropped at the end of the row. Sums are padded to four, lest a vector is read back that lies
 // across two which have not left the store buffer yet.
-template <class Take>
-void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const {
+template <BlockSparseMatrix::Above above, class Take>
+void BlockSparseMatrix::multiply_rows(const double* in, const IndexRange& range, long first_column,
+                                      const Take& take) const {
   constexpr long ahead =
       256;  // numbers to prefetch, two kilobytes: the hardware alone reaches 80 % of the memory
   const int last = rows() - 1;
@@ -75,9 +86,9 @@ void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const 
   const double copy[4] = {in_last[0], in_last[1], in_last[2], 0};
   const long* const row_start = pattern_->row_start_.data();
   const int* const column = pattern_->column_.data();
-  const double* b = value_.data() + 9 * blocks();
+  const double* b = value_.data() + 9 * row_start[range.last];
   double* const sum = sum_.data();
-  for (int i = last; i >= 0; --i) {
+  for (int i = static_cast<int>(range.last) - 1; i >= range.first; --i) {
     const double* const ui = i == last ? copy : in + 3 * static_cast<long>(i);
     const Four u0 = Four::Constant(ui[0]), u1 = Four::Constant(ui[1]), u2 = Four::Constant(ui[2]);
     const Four u = ConstFourAt(ui);
@@ -93,6 +104,7 @@ void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const 
       s0 += r0 * uj;
       s1 += r1 * uj;
       s2 += r2 * uj;
+      if (above == Above::beyond && j < first_column) continue;  // whose part adds it itself
       FourAt to(sum + 4 * j);
       to += r0 * u0 + r1 * u1 + r2 * u2;
     }
@@ -102,6 +114,25 @@ void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const 
     const Eigen::Vector3d y(total[0], total[1], total[2]);
     take(i, y);
   }
+}
+
+template <class Take>
+void BlockSparseMatrix::multiply_rows(const double* in, const Take& take) const {
+  multiply_rows<Above::within>(in, {0, rows()}, 0, take);
+}
+
+// Each part first adds up what the rows below it have for its own, in the order in which they would have
+// added it themselves.
+template <class Take>
+void BlockSparseMatrix::share_rows(const double* in, const Take& take) const {
+  const std::span<const RowPart> parts = parts_.of(*pattern_);
+  if (parts.size() <= 1) return multiply_rows(in, take);
+  share(static_cast<int>(parts.size()), [&](int p) {
+    const RowPart& part = parts[p];
+    add_from_below(in, part);
+    multiply_rows<Above::within>(in, {part.inner, part.rows.last}, 0, take);
+    multiply_rows<Above::beyond>(in, {part.rows.first, part.inner}, part.rows.first, take);
+  });
 }
 
 /// block += a I + b n nᵀ, with n a vector of 3: the shape of every spring's Jacobian.

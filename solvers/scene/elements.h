@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "solvers/scene/lane_math.h"
+#include "solvers/scene/particle_parts.h"
 #include "solvers/scene/terms.h"
 
 /// Stands behind the parameters of a lane's function: only where it is inlined into the loop over a batch is
@@ -126,12 +127,12 @@ class Elements {
       }
   }
 
-  /// out += the vectors, at the free particles.
-  void scatter(const CornerVectors<corners>& vectors, int batch, double* out) const {
+  /// out += the vectors, at those free particles that are `mine`.
+  void scatter(const CornerVectors<corners>& vectors, int batch, const IndexRange& mine, double* out) const {
     const auto elements = in_batch(batch);
     for (int lane = 0; lane < static_cast<int>(elements.size()); ++lane)
       for (int c = 0; c < corners; ++c)
-        if (const int p = elements[lane][c]; is_free(p))
+        if (const int p = elements[lane][c]; mine.holds(p))
           for (int r = 0; r < 3; ++r) out[3 * static_cast<long>(p) + r] += vectors.component[3 * c + r][lane];
   }
 
@@ -157,21 +158,21 @@ class Elements {
   /// out += the vectors that lane(at, i, vectors) sets at each corner.
   template <class LaneOf>
   void add_vectors(const ParticleField& x, double* out, const LaneOf& lane_of) const {
-    CornerVectors<corners> at, vectors;
-    for (int b = 0; b < batches(); ++b) {
+    share_batches([&](int b, const IndexRange& mine) {
+      CornerVectors<corners> at, vectors;
       gather(x, b, at);
       const auto lane = lane_of(b);
       for (int i = 0; i < batch_size; ++i) lane(at, i, vectors);
-      scatter(vectors, b, out);
-    }
+      scatter(vectors, b, mine, out);
+    });
   }
 
   /// The same by lane(at, u, i, vectors) with a second field: a ParticleField, or the free particles' alone
   /// that is zero at the pinned ones.
   template <class Field, class LaneOf>
   void add_vectors(const ParticleField& x, const Field& field, double* out, const LaneOf& lane_of) const {
-    CornerVectors<corners> at, u, vectors;
-    for (int b = 0; b < batches(); ++b) {
+    share_batches([&](int b, const IndexRange& mine) {
+      CornerVectors<corners> at, u, vectors;
       gather(x, b, at);
       if constexpr (std::is_same_v<Field, ParticleField>) {
         gather(field, b, u);
@@ -180,22 +181,22 @@ class Elements {
       }
       const auto lane = lane_of(b);
       for (int i = 0; i < batch_size; ++i) lane(at, u, i, vectors);
-      scatter(vectors, b, out);
-    }
+      scatter(vectors, b, mine, out);
+    });
   }
 
   /// matrix += the blocks that lane(at, i, blocks) sets between corners c <= d, at their places.
   template <class LaneOf>
   void add_blocks(const ParticleField& x, const BlockPlaces<corners>& places, BlockSparseMatrix& matrix,
                   const LaneOf& lane_of) const {
-    CornerVectors<corners> at;
-    CornerBlocks<corners> blocks;
-    for (int b = 0; b < batches(); ++b) {
+    share_batches([&](int b, const IndexRange& mine) {
+      CornerVectors<corners> at;
+      CornerBlocks<corners> blocks;
       gather(x, b, at);
       const auto lane = lane_of(b);
       for (int i = 0; i < batch_size; ++i) lane(at, i, blocks);
-      places.add(*this, b, blocks, matrix);
-    }
+      places.add(*this, b, blocks, mine, matrix);
+    });
   }
 
   /// The pairs of free particles within each element.
@@ -210,6 +211,20 @@ class Elements {
   }
 
  private:
+  static constexpr double element_cost = 20;  // at least [ns]
+
+  /// Calls work(batch, mine) for every batch, where it is worth it on several threads (particle_parts.h).
+  template <class Work>
+  void share_batches(const Work& work) const {
+    const auto touches = [&](int batch, const IndexRange& particles) {
+      for (const Particles& element : in_batch(batch))
+        for (const int p : element)
+          if (particles.holds(p)) return true;
+      return false;
+    };
+    parts_.share(batches(), free_count_, element_cost * size(), touches, work);
+  }
+
   template <class Element>
   static std::vector<Particles> particles_of(const std::vector<Element>& elements) {
     std::vector<Particles> particles;
@@ -221,6 +236,7 @@ class Elements {
   std::vector<Particles> particles_;
   int size_;
   int free_count_;
+  mutable ParticleParts parts_;
 };
 
 /// Where the blocks of elements are in a matrix. Looking a block up costs more than filling it, so `bind`
@@ -240,9 +256,9 @@ class BlockPlaces {
     pattern_ = pattern;
   }
 
-  /// matrix += the blocks of a batch of elements, between free particles.
+  /// matrix += the blocks of a batch of elements, between free particles, in those rows that are `mine`.
   void add(const Elements<corners>& elements, int batch, const CornerBlocks<corners>& blocks,
-           BlockSparseMatrix& matrix) const {
+           const IndexRange& mine, BlockSparseMatrix& matrix) const {
     const auto in_batch = elements.in_batch(batch);
     const bool bound = pattern_ == matrix.pattern();
     for (int lane = 0; lane < static_cast<int>(in_batch.size()); ++lane) {
@@ -250,11 +266,11 @@ class BlockPlaces {
       const Place place =
           bound ? places_[batch * batch_size + lane] : look_up(elements, particles, *matrix.pattern());
       for (int c = 0, pair = 0; c < corners; ++c) {
-        if (elements.is_free(particles[c]))
+        if (mine.holds(particles[c]))
           add_on_diagonal(blocks.entry + 9 * upper<corners>(c, c), lane,
                           matrix.block(matrix.diagonal(particles[c])));
         for (int d = c + 1; d < corners; ++d, ++pair) {
-          if (place[pair] < 0) continue;
+          if (place[pair] < 0 || !mine.holds(std::max(particles[c], particles[d]))) continue;
           const Entries entry = blocks.entry + 9 * upper<corners>(c, d);
           if (particles[c] > particles[d]) {
             add(entry, lane, matrix.block(place[pair]));

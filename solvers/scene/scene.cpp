@@ -9,6 +9,7 @@
 #include "solvers/scene/springs.h"
 #include "solvers/scene/tet_solid.h"
 #include "solvers/scene/triangle_cloth.h"
+#include "solvers/team.h"
 
 namespace springstab {
 namespace {
@@ -130,7 +131,8 @@ ParticleField Scene::position_field(const Vector& x) const { return {x.data(), p
 
 void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   const ParticleField positions = position_field(x);
-  out.setZero(size());
+  out.resize(size());
+  share_range(size(), 0.3, [&](long first, long last) { out.segment(first, last - first).setZero(); });
   for (const auto& term : terms_.elastic) {
     if (damping_.alpha == 0) {
       term->add_force(positions, out.data());
@@ -143,8 +145,10 @@ void Scene::acceleration(const Vector& x, const Vector& v, Vector& out) {
   const double* const w = v.data();
   double* const a = out.data();
   const double d0 = damping_.d0, g[3] = {gravity_.x(), gravity_.y(), gravity_.z()};
-  for (long i = 0; i < free_count_; ++i)
-    for (int r = 0; r < 3; ++r) a[3 * i + r] = inverse_mass_[i] * a[3 * i + r] + g[r] - d0 * w[3 * i + r];
+  share_range(free_count_, 2, [&](long first, long last) {
+    for (long i = first; i < last; ++i)
+      for (int r = 0; r < 3; ++r) a[3 * i + r] = inverse_mass_[i] * a[3 * i + r] + g[r] - d0 * w[3 * i + r];
+  });
 }
 
 void Scene::linearize(const Vector& x, const Vector& v, Linearization<Vector>& linear) {

@@ -145,18 +145,27 @@ void ParticlePairs::gather(const double* u, int begin, Vectors& out) const {
       begin, out);
 }
 
-void ParticlePairs::scatter(const Vectors& u, int begin, double* out) const {
+void ParticlePairs::scatter(const Vectors& u, int begin, const IndexRange& mine, double* out) const {
   const double* from = u;
   for (const Run& run : runs(begin)) {
-    const int count = 3 * run.count;
-    double* const i = out + 3 * static_cast<long>(run.i);
-    double* const j = out + 3 * static_cast<long>(run.j);
-    if (run.i < free_count_)
-      for (int r = 0; r < count; ++r) i[r] += from[r];
-    if (run.j < free_count_)
-      for (int r = 0; r < count; ++r) j[r] -= from[r];
-    from += count;
+    const auto add = [&](int first_particle, double sign) {
+      const long first = std::max<long>(first_particle, mine.first);
+      const long last = std::min<long>(first_particle + static_cast<long>(run.count), mine.last);
+      const double* const some = from + 3 * (first - first_particle);
+      double* const to = out + 3 * first;
+      for (long r = 0; r < 3 * (last - first); ++r) to[r] += sign * some[r];
+    };
+    add(run.i, 1);
+    add(run.j, -1);
+    from += 3 * run.count;
   }
+}
+
+bool ParticlePairs::touches(int batch, const IndexRange& particles) const {
+  for (const Run& run : runs(batch * batch_size))
+    for (const int first : {run.i, run.j})
+      if (first < particles.last && first + run.count > particles.first) return true;
+  return false;
 }
 
 void ParticlePairs::keep(const Numbers& a, const Numbers& b, const Vectors& u, int begin, int count) const {
@@ -164,17 +173,20 @@ void ParticlePairs::keep(const Numbers& a, const Numbers& b, const Vectors& u, i
 }
 
 void ParticlePairs::add_kept_blocks(BlockSparseMatrix& matrix) const {
+  constexpr double row_cost = 50;  // [ns]
   const bool known = pattern_ == matrix.pattern();
-  for (int i = 0; i < free_count_; ++i) {
-    SpringBlock sum;
-    for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m) {
-      const SpringBlock block(kept_[incident_[m].pair]);
-      sum += block;
-      const long place = known ? place_[m] : find_place(*matrix.pattern(), i, incident_[m].other);
-      if (place >= 0) add(block, -1, matrix.block(place));
+  share_range(free_count_, row_cost, [&](long begin, long end) {
+    for (int i = static_cast<int>(begin); i < end; ++i) {
+      SpringBlock sum;
+      for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m) {
+        const SpringBlock block(kept_[incident_[m].pair]);
+        sum += block;
+        const long place = known ? place_[m] : find_place(*matrix.pattern(), i, incident_[m].other);
+        if (place >= 0) add(block, -1, matrix.block(place));
+      }
+      add(sum, 1, matrix.block(matrix.diagonal(i)));
     }
-    add(sum, 1, matrix.block(matrix.diagonal(i)));
-  }
+  });
 }
 
 Springs::Springs(const std::vector<Spring>& springs, int free_count) : pairs_(springs, free_count) {
@@ -198,19 +210,19 @@ double Springs::energy(const ParticleField& x) const {
 }
 
 void Springs::add_force(const ParticleField& x, double* force) const {
-  pairs_.for_each_batch([&](int begin, int count) {
+  pairs_.share_batches([&](int begin, int count, const IndexRange& mine) {
     alignas(64) ParticlePairs::Vectors d;
     pairs_.gather(x, begin, d);
     for (int k = 0; k < count; ++k) {
       const double c = -stiffness_[begin + k] * (1 - rest_length_[begin + k] / std::sqrt(dot(d, d, k)));
       for (int r = 0; r < 3; ++r) d[3 * k + r] *= c;
     }
-    pairs_.scatter(d, begin, force);
+    pairs_.scatter(d, begin, mine, force);
   });
 }
 
 void Springs::add_stiffness_times(const ParticleField& x, const double* u, double scale, double* out) const {
-  pairs_.for_each_batch([&](int begin, int count) {
+  pairs_.share_batches([&](int begin, int count, const IndexRange& mine) {
     alignas(64) ParticlePairs::Vectors d, w;
     pairs_.gather(x, begin, d);
     pairs_.gather(u, begin, w);
@@ -219,12 +231,12 @@ void Springs::add_stiffness_times(const ParticleField& x, const double* u, doubl
       const double across = scale * s.a, along = scale * s.b * dot(d, w, k);
       combine(across, w, along, d, k);
     }
-    pairs_.scatter(w, begin, out);
+    pairs_.scatter(w, begin, mine, out);
   });
 }
 
 void Springs::add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const {
-  pairs_.for_each_batch([&](int begin, int count) {
+  pairs_.share_batches([&](int begin, int count, const IndexRange& mine) {
     alignas(64) ParticlePairs::Vectors d, w;
     pairs_.gather(x, begin, d);
     pairs_.gather(v, begin, w);
@@ -233,14 +245,14 @@ void Springs::add_damped_force(const ParticleField& x, const double* v, double a
       const double across = -alpha * s.a, along = -s.a - alpha * s.b * dot(d, w, k);
       combine(across, w, along, d, k);
     }
-    pairs_.scatter(w, begin, force);
+    pairs_.scatter(w, begin, mine, force);
   });
 }
 
 template <class StiffnessOf>
 void Springs::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix,
                          const StiffnessOf& block_of) const {
-  pairs_.for_each_batch([&](int begin, int count) {
+  pairs_.for_each_batch_at_once([&](int begin, int count) {
     alignas(64) ParticlePairs::Vectors d;
     alignas(64) ParticlePairs::Numbers a, b;
     pairs_.gather(x, begin, d);
@@ -267,7 +279,7 @@ AxialDamping::AxialDamping(const std::vector<Spring>& springs, int free_count) :
 }
 
 void AxialDamping::add_force(const ParticleField& x, const ParticleField& v, double* force) const {
-  pairs_.for_each_batch([&](int begin, int count) {
+  pairs_.share_batches([&](int begin, int count, const IndexRange& mine) {
     alignas(64) ParticlePairs::Vectors d, w;
     pairs_.gather(x, begin, d);
     pairs_.gather(v, begin, w);
@@ -275,12 +287,12 @@ void AxialDamping::add_force(const ParticleField& x, const ParticleField& v, dou
       const double c = -damping_[begin + k] * dot(d, w, k) / dot(d, d, k);
       for (int r = 0; r < 3; ++r) d[3 * k + r] *= c;
     }
-    pairs_.scatter(d, begin, force);
+    pairs_.scatter(d, begin, mine, force);
   });
 }
 
 void AxialDamping::add_damping(const ParticleField& x, BlockSparseMatrix& damping) const {
-  pairs_.for_each_batch([&](int begin, int count) {
+  pairs_.for_each_batch_at_once([&](int begin, int count) {
     alignas(64) ParticlePairs::Vectors d;
     alignas(64) ParticlePairs::Numbers a, b;
     pairs_.gather(x, begin, d);

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "solvers/scene/particle_parts.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/terms.h"
 
@@ -38,25 +39,34 @@ class ParticlePairs {
   Couplings couplings() const;
   void bind(const SharedPattern& pattern);
 
-  /// Calls work(begin, count) for every batch.
+  /// Calls work(begin, count) for every batch, one after another.
   template <class Work>
   void for_each_batch(const Work& work) const {
     for (int begin = 0; begin < size(); begin += batch_size)
       work(begin, std::min(batch_size, size() - begin));
   }
+  /// The same where it is worth it on several threads, each batch on one of them.
+  template <class Work>
+  void for_each_batch_at_once(const Work& work) const;
+  /// Calls work(begin, count, mine) for every batch, where it is worth it on several threads: with each part
+  /// of the free particles, `mine`, for the batches that have some of them, which must write to no others.
+  template <class Work>
+  void share_batches(const Work& work) const;
 
   /// out = u_i - u_j for the pairs of the batch that begins there.
   void gather(const ParticleField& u, int begin, Vectors& out) const;
   /// The same of free particles' vectors that are zero at the pinned ones.
   void gather(const double* u, int begin, Vectors& out) const;
-  /// out_i += u, out_j -= u at the free particles.
-  void scatter(const Vectors& u, int begin, double* out) const;
+  /// out_i += u, out_j -= u at those free particles that are `mine`.
+  void scatter(const Vectors& u, int begin, const IndexRange& mine, double* out) const;
   /// Blocks B = a I + b uuᵀ are kept until all are known, and then matrix += [[B, -B], [-B, B]] on the free
   /// particles, row by row of the matrix: to scatter them pair by pair misses the caches too often.
   void keep(const Numbers& a, const Numbers& b, const Vectors& u, int begin, int count) const;
   void add_kept_blocks(BlockSparseMatrix& matrix) const;
 
  private:
+  static constexpr double pair_cost = 5;  // [ns]
+
   /// Within one batch; either the first particles of all its pairs are free or none, and so the second ones.
   struct Run {
     int i, j, count;
@@ -68,6 +78,8 @@ class ParticlePairs {
     const int batch = begin / batch_size;
     return {runs_.data() + run_start_[batch], runs_.data() + run_start_[batch + 1]};
   }
+
+  bool touches(int batch, const IndexRange& particles) const;
 
   /// Where the block that a pair of i and another particle stands for is in row i of a pattern; -1 if it lies
   /// above the diagonal or the other one is pinned.
@@ -87,7 +99,29 @@ class ParticlePairs {
   std::vector<Incident> incident_;
   std::vector<long> place_;  // of each incident pair in the pattern
   mutable std::vector<Kept> kept_;
+  mutable ParticleParts parts_;
 };
+
+template <class Work>
+void ParticlePairs::for_each_batch_at_once(const Work& work) const {
+  const int batches = static_cast<int>(run_start_.size()) - 1;
+  share_range(batches, pair_cost * batch_size, [&](long first, long last) {
+    for (int begin = static_cast<int>(first) * batch_size; begin < std::min<long>(size(), last * batch_size);
+         begin += batch_size)
+      work(begin, std::min(batch_size, size() - begin));
+  });
+}
+
+template <class Work>
+void ParticlePairs::share_batches(const Work& work) const {
+  const int batches = static_cast<int>(run_start_.size()) - 1;
+  parts_.share(
+      batches, free_count_, pair_cost * size(), [&](int b, const IndexRange& r) { return touches(b, r); },
+      [&](int batch, const IndexRange& mine) {
+        const int begin = batch * batch_size;
+        work(begin, std::min(batch_size, size() - begin), mine);
+      });
+}
 
 /// The elastic part.
 class Springs final : public ElasticTerm {

@@ -1,0 +1,31 @@
+#include "experiments/command/optional_parts.h"
+
+#include "analysis/proofs/sparse_cholesky.h"
+
+namespace springstab {
+
+std::vector<OptionalPart> optional_parts() {
+#ifdef SPRINGSTAB_ODEINT
+  constexpr bool odeint = true;
+#else
+  constexpr bool odeint = false;
+#endif
+#ifdef SPRINGSTAB_SUNDIALS
+  constexpr bool sundials = true;
+#else
+  constexpr bool sundials = false;
+#endif
+  return {{"CHOLMOD, METIS and OpenBLAS", "proofs of large systems", has_cholmod()},
+          {"Boost.odeint", "work-precision", odeint},
+          {"SUNDIALS", "work-precision", sundials}};
+}
+
+std::string optional_parts_text() {
+  std::string list;
+  for (const OptionalPart& part : optional_parts())
+    list += std::string(list.empty() ? "" : ", ") + (part.built_in ? "with " : "without ") + part.name +
+            " (for " + part.purpose + ")";
+  return list;
+}
+
+}  // namespace springstab

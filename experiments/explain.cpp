@@ -94,6 +94,21 @@ void add_algebra(Json& parts, Scene& scene, const State<Vector>& at, double h, d
   }
 }
 
+// What acts between steps.
+void add_contact_part(Json& parts, const Subject& subject, const State<Vector>& at, double h) {
+  const auto filter = subject.contact_filter();
+  if (!filter) return;
+  State<Vector> after = at;
+  parts.push_back(
+      part("contact, pairs of particle and obstacle",
+           subject.scene()->free_particles() * static_cast<long>(subject.contact()->obstacles.size()),
+           "impulses", seconds_each([&] {
+             after = at;
+             filter->apply(h, h, at, after);
+           }),
+           1));
+}
+
 std::vector<std::string> absent_parts(const SpringMaterial& material) {
   std::vector<std::string> absent;
   const auto need = [&](double stiffness, const char* kind) {
@@ -137,8 +152,10 @@ Json explain(Subject& subject, std::string_view method, const StepPlan& plan, co
   Scene& scene = *subject.scene();
   const long each = plan.steps_per_linearization;
   const long steps = std::min(plan.steps, (steps_to_try + each - 1) / each * each);
-  const Counts counts =
-      measured_run(scene, method, {plan.h, steps, each}, subject.energy_watch(start), start).counts;
+  const auto filter = subject.contact_filter();
+  const Counts counts = measured_run(scene, method, {plan.h, steps, each}, subject.energy_watch(start), start,
+                                     {}, {}, filter.get())
+                            .counts;
   const auto a_step = [&](long count) { return static_cast<double>(count) / static_cast<double>(steps); };
 
   Json parts = Json::array();
@@ -148,6 +165,7 @@ Json explain(Subject& subject, std::string_view method, const StepPlan& plan, co
     add_algebra(parts, scene, start, plan.h, a_step(counts.block_products - counts.cg_iterations),
                 Method(method).info().implicit, a_step(counts.cg_iterations));
   }
+  add_contact_part(parts, subject, start, plan.h);
   return {{"particles", scene.particles()},
           {"pinned", scene.particles() - scene.free_particles()},
           {"steps_tried", steps},

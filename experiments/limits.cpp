@@ -10,6 +10,7 @@
 #include "experiments/cheapest_report.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
+#include "experiments/contact_report.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
@@ -27,6 +28,12 @@ struct Row {
   std::string_view method;
   MethodLimits limits;  // all unknown if k0 is not
 };
+
+std::vector<std::string> names_of(const std::vector<Row>& rows) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) names.emplace_back(row.method);
+  return names;
+}
 
 bool nothing_limits(const Row& row) { return row.limits.status == LimitStatus::unlimited; }
 
@@ -257,6 +264,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   const std::vector<Method> methods =
       options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
   Subject subject(options.input, true);
+  if (options.error) expect_no_contact(subject, "--error");
   print_mesh_notes(subject);
   print_size_warning(subject);
   const State<Vector> start = subject.initial_state(common.seed);
@@ -280,6 +288,8 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     if (options.certify && !limits.h_certified) status = no_answer;
     rows.push_back({method.name(), limits});
   }
+  std::optional<ContactLimits> contact;
+  if (subject.contact()) contact.emplace(subject, start, names_of(rows), options.safety);
   // Measured, on one thread, and not the same every time: no program gets it unasked.
   set_loop_threads(1);
   const CheapestOptions asked = cheapest_options(options, cpu_seconds() - begin);
@@ -291,6 +301,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   waiting.reset();
   if (common.json) {
     Json json = report(answer, rows, options.safety, subject);
+    if (contact) json["contact"] = contact->json();
     if (cheapest) {
       for (std::size_t i = 0; i < rows.size(); ++i)
         add_steps(json["methods"][i], *cheapest, methods[i], rows[i].limits, asked);
@@ -299,6 +310,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
+    if (contact) std::cout << contact->text_of();
     if (answer.k0().converged) print_cheapest(*cheapest, answer, methods, asked);
   }
   print_too_long(answer, rows, subject);

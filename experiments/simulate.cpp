@@ -6,6 +6,7 @@
 #include "experiments/command/interrupt.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
+#include "experiments/contact_report.h"
 #include "experiments/explain.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
@@ -129,6 +130,9 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   if (resumed && !common.quiet) std::cerr << text("springstab: going on at t = %.6g s\n", begin.run.time);
   set_loop_threads(common.threads);  // what was measured before is for one
   recorder.emplace(subject, options, resumed ? others.at("recorder") : Json());
+  const std::unique_ptr<ContactFilter> contact = subject.contact_filter();
+  if (contact && resumed) contact->set_counts(contact_counts_of(others.at("contact")));
+  if (subject.contact()) course.watch = with_obstacles(course.watch, *subject.contact());
   CountingSystem counted(subject.system(), resumed ? counts_of(others.at("counts")) : Counts());
   const double cpu_before = cpu_seconds() - (resumed ? others.at("cpu_seconds").get<double>() : 0);
   course.end = std::move(begin.state);
@@ -144,17 +148,18 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
         if (error) error->see(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
           checkpoint.save([&]() -> KeptRun {
-            return {so_far,
-                    s,
-                    {{"chooser", kept(chooser, subject)},
-                     {"recorder", recorder->kept()},
-                     {"counts", json_of(counted.counts())},
-                     {"cpu_seconds", cpu_seconds() - cpu_before}}};
+            Json kept_of_run{{"chooser", kept(chooser, subject)},
+                             {"recorder", recorder->kept()},
+                             {"counts", json_of(counted.counts())},
+                             {"cpu_seconds", cpu_seconds() - cpu_before}};
+            if (contact) kept_of_run["contact"] = json_of(contact->counts());
+            return {so_far, s, kept_of_run};
           });
         if (so_far.steps % steps_a_look == 0) progress.update(so_far.time / options.duration);
         return !interrupt.requested();
       },
-      chooser.policy());
+      chooser.policy(), contact.get());
+  if (contact) course.contact = contact->counts();
   course.cpu_seconds = cpu_seconds() - cpu_before;
   course.counts = counted.counts();
   course.stopped = interrupt.requested();
@@ -166,12 +171,15 @@ constexpr int again = -1;  // no exit status
 // `error` is null unless an error is to be reached; `again` where the run is to be made once more for it.
 int run_subject(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
                 ErrorRun* error) {
-  StepChooser chooser(subject, step_options(common, options));
+  const State<Vector> start = subject.initial_state(common.seed);
+  StepOptions steps = step_options(common, options);
+  if (const auto most = step_in_contact(subject, start, options.method, options.safety, common.seed))
+    steps.max_step = std::min(*most, steps.max_step.value_or(*most));
+  StepChooser chooser(subject, steps);
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) return say_no_plan(options.method, reason_text(chooser), common.json);
   prepare_solver(subject, options);
   print_unused_options(common, options, !subject.scene());
-  const State<Vector> start = subject.initial_state(common.seed);
   const Json explanation = options.explain ? explain(subject, options.method, *plan, start) : Json();
   if (options.explain && !common.json) std::cout << explanation_table(explanation);
   print_step_warning(subject, start, plan->h);
@@ -236,6 +244,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   Subject subject(options.input);
   print_mesh_notes(subject);
   print_size_warning(subject);
+  if (options.error) expect_no_contact(subject, "--error");
   prepare(subject, options);
   return naming_duration([&] {
     return options.error ? run_to_error(common, options, subject)

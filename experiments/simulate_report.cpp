@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "experiments/contact_report.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 
@@ -17,9 +18,11 @@ double energy_of(const State<Vector>& state, System& system) {
   return system.kinetic_energy(state.v) + system.potential_energy(state.x);
 }
 
-// Kinetic, elastic and gravity's potential energy together never grow by themselves [J].
+// Kinetic, elastic and gravity's potential energy together never grow by themselves [J]; obstacles in motion
+// give.
 double gained(const Course& course, System& system) {
-  return std::max(energy_of(course.end, system) - energy_of(course.start, system), 0.);
+  const double given = course.contact ? std::max(course.contact->obstacle_work, 0.) : 0;
+  return std::max(energy_of(course.end, system) - energy_of(course.start, system) - given, 0.);
 }
 
 // What passed from one kind of energy to another, at the end against the start [J].
@@ -100,6 +103,7 @@ Json json_of(const Course& course, const SimulateOptions& options, Subject& subj
                 {"gained", number(gained(course, system))}}},
               {"frames", frames},
               {"mesh", mesh_json(subject)}};
+  if (course.contact) add_contact(report, *course.contact);
   report["damping"] = {{"d0", number(subject.damping().d0)}, {"alpha", number(subject.damping().alpha)}};
   if (Scene* scene = subject.scene()) {
     const Eigen::Vector3d last = scene->positions(course.end.x).back();
@@ -130,6 +134,7 @@ void print_report(const Course& course, const SimulateOptions& options, Subject&
     const Eigen::Vector3d p = scene->positions(course.end.x).back();
     std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p.x(), p.y(), p.z());
   }
+  if (course.contact) std::cout << contact_text(*course.contact);
   if (frames > 0) std::cout << text("%d frames in %s\n", frames, options.output.c_str());
 }
 

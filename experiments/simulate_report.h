@@ -16,6 +16,7 @@ struct Course {
   State<Vector> start, end;
   EnergyWatch watch;
   Counts counts;
+  std::optional<ContactCounts> contact{};
   double cpu_seconds = 0, step = 0;
   bool stopped = false;
 

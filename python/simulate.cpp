@@ -79,8 +79,11 @@ py::dict simulate(Input& input, const StepOptions& options, int frames, const Ca
       stopped = callback(so_far.time, now.x, now.v).is(py::bool_(false));
       return !stopped;
     };
-    result = springstab::simulate(model.system(), *chooser.method().stepper(), plan, chooser.watch(start),
-                                  state, observe, chooser.policy());
+    const auto contact = input.scene() ? input.scene()->contact_filter() : nullptr;
+    EnergyWatch watch = chooser.watch(start);
+    if (contact) watch = with_obstacles(watch, *input.scene()->contact());
+    result = springstab::simulate(model.system(), *chooser.method().stepper(), plan, watch, state, observe,
+                                  chooser.policy(), contact.get());
   }
   py::dict d;
   d["method"] = chooser.method().name();

@@ -34,6 +34,17 @@ struct Checkpoint {
   }
 };
 
+// A step to the time t, and the filter. `before` is workspace.
+StepStatus filtered_step(System& system, Stepper& stepper, StepFilter& filter, double t, double h,
+                         State<Vector>& before, State<Vector>& state) {
+  before.x = state.x;
+  before.v = state.v;
+  const StepStatus status = stepper.step(system, h, state);
+  if (status == StepStatus::done && filter.apply(t, h, before, state) && !state.memory.empty())
+    stepper.start(system, h, state);
+  return status;
+}
+
 }  // namespace
 
 double EnergyWatch::speed_bound(double t) const {
@@ -60,16 +71,19 @@ RunSoFar start_of(const StepPlan& plan) {
 }
 
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
-                          State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
+                          State<Vector>& state, const Observer& observe, const StepPolicy& policy,
+                          StepFilter* filter) {
   stepper.start(system, plan.h, state);
-  return resume_simulation(system, stepper, start_of(plan), watch, state, observe, policy);
+  return resume_simulation(system, stepper, start_of(plan), watch, state, observe, policy, filter);
 }
 
 SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
-                                   State<Vector>& state, const Observer& observe, const StepPolicy& policy) {
+                                   State<Vector>& state, const Observer& observe, const StepPolicy& policy,
+                                   StepFilter* filter) {
   std::vector<Stage>& stages = run.stages;
   double h = stages.back().plan.h;  // for which the state carries what it does
   Checkpoint checkpoint{state, run.steps, run.time, h};
+  State<Vector> before;  // the step that is filtered
   stepper.restart(stages.back().plan.steps_per_linearization);
   if (observe && !observe(run, state)) return static_cast<SimulationResult&&>(run);
   const auto has_diverged = [&](double t) {
@@ -89,7 +103,8 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
     const double t = time_of(stage, stage.done + 1);
     if (h != stage.plan.h) stepper.change_step(system, h, stage.plan.h, state);
     h = stage.plan.h;
-    run.status = stepper.step(system, h, state);
+    run.status = filter ? filtered_step(system, stepper, *filter, t, h, before, state)
+                        : stepper.step(system, h, state);
     if (run.status == StepStatus::done) {
       ++stage.done;
       run.at_checkpoint = at_checkpoint(stage);

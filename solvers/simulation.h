@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "solvers/step_filter.h"
 #include "solvers/stepper.h"
 #include "solvers/system.h"
 
@@ -93,14 +94,16 @@ using StepPolicy = std::function<std::optional<StepPlan>(const SimulationResult&
 /// 16 steps apart, and at the end. After a divergence the run is back at the last of them (paper §4, 2.3: the
 /// latest result is discarded): there it ends, or goes on, linearized anew, with what the policy plans. A
 /// failed solve leaves the state as it was before the step. Where h changes, the stepper is told. Neither
-/// non-finite nor implausible states reach the observer.
+/// non-finite nor implausible states reach the observer. A filter, unless null, has every state before the
+/// watch has it; where it changes one, what the method carries begins anew.
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
-                          State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {});
+                          State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {},
+                          StepFilter* filter = nullptr);
 
 /// The same from a checkpoint that an observer saw, with the state it saw there and all it carries: goes on
 /// to the same bits as if the run had not been interrupted, if system and policy are as they were.
 SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
                                    State<Vector>& state, const Observer& observe = {},
-                                   const StepPolicy& policy = {});
+                                   const StepPolicy& policy = {}, StepFilter* filter = nullptr);
 
 }  // namespace springstab

@@ -56,13 +56,6 @@ class MethodReader : private JsonReader {
     expect_members(json, keys);
   }
 
-  const JsonValue& needed(const JsonValue& json, std::string_view key, const std::string& expected) const {
-    const JsonValue* const value = find(json, key);
-    if (!value)
-      fail(json.line, "'" + std::string(key) + "' is missing in " + json.name + ", expected " + expected);
-    return *value;
-  }
-
   std::string word(const JsonValue& json) const {
     if (json.kind != JsonValue::Kind::string) wrong(json, "a word in quotes");
     return json.text;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "solvers/contact/contact.h"
 #include "solvers/scene/spring_cloth.h"
 #include "solvers/scene/tet_solid.h"
 #include "solvers/scene/triangle_cloth.h"
@@ -49,6 +50,14 @@ using Geometry = std::variant<Grid, std::string>;
 /// Springs, Baraff's and Witkin's triangles, or a solid of tetrahedra.
 using Material = std::variant<SpringMaterial, ClothMaterial, SolidMaterial>;
 
+/// Contact as it was written, and where, for messages.
+struct ContactDescription {
+  Contact contact;
+  std::string source;
+  long line = 0, thickness_line = 0;
+  std::vector<long> obstacle_lines{};
+};
+
 struct SceneDescription {
   Geometry geometry;
   Material material;
@@ -57,6 +66,7 @@ struct SceneDescription {
   RayleighDescription damping;
   InitialDescription initial;
   double scale = 1;  // of the geometry: what its numbers are [m]
+  std::optional<ContactDescription> contact{};
 };
 
 /// The same particles by ascending ranges that are apart from each other.

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "experiments/command/words.h"
+#include "experiments/inputs/contact_keys.h"
 #include "experiments/inputs/grid.h"
 #include "experiments/inputs/json_reader.h"
 #include "experiments/inputs/scene_description.h"
@@ -18,8 +19,8 @@ class SceneReader : private JsonReader {
   using JsonReader::JsonReader;
 
   SceneDescription scene(const JsonValue& json) const {
-    expect_members(json,
-                   {"geometry", "material", "pins", "gravity", "damping", "initial", "scale", "diagonals"});
+    expect_members(json, {"geometry", "material", "pins", "gravity", "damping", "initial", "contact", "scale",
+                          "diagonals"});
     const JsonValue* geometry_json = find(json, "geometry");
     if (!geometry_json)
       fail(json.line,
@@ -42,12 +43,11 @@ class SceneReader : private JsonReader {
     if (const JsonValue* value = find(json, "gravity")) scene.gravity = vector(*value);
     if (const JsonValue* value = find(json, "damping")) scene.damping = damping(*value);
     if (const JsonValue* value = find(json, "initial")) scene.initial = initial(*value);
+    if (const JsonValue* value = find(json, "contact")) scene.contact = read_contact(source_, *value);
     return scene;
   }
 
  private:
-  enum class Sign { any, not_negative, positive };
-
   /// A key that may stand in the geometry or beside it; null where it does neither.
   const JsonValue* beside_or_in(const JsonValue& scene, const JsonValue& geometry,
                                 std::string_view key) const {
@@ -56,37 +56,6 @@ class SceneReader : private JsonReader {
       fail(std::max(beside->key_line, in->key_line),
            beside->name + " stands in 'geometry' and beside it, expected it once");
     return beside ? beside : in;
-  }
-
-  double number(const JsonValue& json, Sign sign) const {
-    const bool good =
-        json.kind == JsonValue::Kind::number &&
-        (sign == Sign::any || json.number > 0 || (sign == Sign::not_negative && json.number == 0));
-    if (!good)
-      wrong(json, sign == Sign::any            ? "a number"
-                  : sign == Sign::not_negative ? "zero or a positive number"
-                                               : "a positive number");
-    return json.number;
-  }
-
-  int integer(const JsonValue& json, int least, int most) const {
-    if (json.kind != JsonValue::Kind::number || json.number < least || json.number > most ||
-        json.number != std::trunc(json.number))
-      wrong(json, "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
-    return static_cast<int>(json.number);
-  }
-
-  Eigen::Vector3d vector(const JsonValue& json, Sign sign = Sign::any) const {
-    if (json.kind != JsonValue::Kind::array) wrong(json, "an array of three numbers");
-    if (json.items.size() != 3)
-      fail(json.line,
-           json.name + " has " + std::to_string(json.items.size()) + " entries, expected three numbers");
-    return {number(json.items[0], sign), number(json.items[1], sign), number(json.items[2], sign)};
-  }
-
-  template <class T>
-  void read_number(const JsonValue& object, std::string_view key, Sign sign, T& value) const {
-    if (const JsonValue* member = find(object, key)) value = number(*member, sign);
   }
 
   void read_per_kind(const JsonValue& object, PerKind& values) const {
@@ -119,11 +88,6 @@ class SceneReader : private JsonReader {
     read_number(geometry, "spacing", Sign::positive, grid.spacing);
     check(grid, source_, json.line);
     return grid;
-  }
-
-  std::string text(const JsonValue& json, const std::string& expected) const {
-    if (json.kind != JsonValue::Kind::string) wrong(json, expected);
-    return json.text;
   }
 
   Material material(const JsonValue& json, bool solid) const {

@@ -7,6 +7,7 @@
 
 #include "experiments/inputs/grid.h"
 #include "experiments/inputs/pinned.h"
+#include "solvers/contact/penalty.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/io/mesh_file.h"
@@ -96,33 +97,41 @@ RayleighDamping parse_rayleigh(const std::string& words) {
   return damping;
 }
 
-// Edges of a net or a solid are springs, those of triangles are sides.
-SceneSize size_of(const std::vector<Spring>& edges, long more_springs) {
-  SceneSize size{{}, 0, static_cast<long>(edges.size()) + more_springs, 0, 0};
-  for (const Spring& s : edges)
-    size.shortest_edge = std::min(size.shortest_edge.value_or(s.rest_length), s.rest_length);
-  return size;
+// Calls visit(i, j, length) for the edges: of a net or a solid they are springs, of triangles sides.
+template <class Visit>
+void visit_edges(const std::vector<Spring>& springs, const Visit& visit) {
+  for (const Spring& s : springs) visit(s.i, s.j, s.rest_length);
 }
-
-SceneSize elements_of(const SpringNet& net) { return size_of(net.springs, 0); }
-SceneSize elements_of(const TetSolid& solid) {
-  return size_of(solid.edges, static_cast<long>(solid.altitudes.size()));
+template <class Visit>
+void visit_edges(const SpringNet& net, const Visit& visit) {
+  visit_edges(net.springs, visit);
 }
-SceneSize elements_of(const TriangleCloth& cloth) {
-  SceneSize size{{}, 0, 0, static_cast<long>(cloth.triangles.size()), static_cast<long>(cloth.hinges.size())};
-  const auto side = [&](int i, int j) {
-    const double length = (cloth.rest[i] - cloth.rest[j]).norm();
-    size.shortest_edge = std::min(size.shortest_edge.value_or(length), length);
-  };
+template <class Visit>
+void visit_edges(const TetSolid& solid, const Visit& visit) {
+  visit_edges(solid.edges, visit);
+}
+template <class Visit>
+void visit_edges(const TriangleCloth& cloth, const Visit& visit) {
+  const auto side = [&](int i, int j) { visit(i, j, (cloth.rest[i] - cloth.rest[j]).norm()); };
   for (const auto& [p, uv] : cloth.triangles)
     for (int c = 0; c < 3; ++c) side(p[c], p[(c + 1) % 3]);
   for (const Hinge& hinge : cloth.hinges) side(hinge.particles[0], hinge.particles[1]);
-  return size;
+}
+
+SceneSize elements_of(const SpringNet& net) { return {{}, 0, static_cast<long>(net.springs.size()), 0, 0}; }
+SceneSize elements_of(const TetSolid& solid) {
+  return {{}, 0, static_cast<long>(solid.edges.size() + solid.altitudes.size()), 0, 0};
+}
+SceneSize elements_of(const TriangleCloth& cloth) {
+  return {{}, 0, 0, static_cast<long>(cloth.triangles.size()), static_cast<long>(cloth.hinges.size())};
 }
 
 template <class Cloth>
 SceneSize size_of(const Cloth& cloth) {
   SceneSize size = elements_of(cloth);
+  visit_edges(cloth, [&](int, int, double length) {
+    size.shortest_edge = std::min(size.shortest_edge.value_or(length), length);
+  });
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& place : cloth.rest) box.extend(place);
   size.extent = box.sizes();
@@ -242,9 +251,50 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, std
   std::vector<Eigen::Vector3d> places;
   for (int i : pinned_) places.push_back(stretch_.cwiseProduct(cloth.rest[i]));
   scene->place_pinned(places);
+  if (description.contact) add_contact(*description.contact, cloth, *scene);
   State<Vector> start = start_of(*scene, description.initial);
   Model::operator=(Model(std::move(scene), std::move(start)));
+  if (description.contact) expect_apart(*description.contact);
   if (!description.damping.alpha && damping().kind != DampingModel::Kind::general) design_damping();
+}
+
+// By its name in the input: that of a vertex of the file where there is one.
+int Subject::number_in_file(int particle) const {
+  if (!mesh_file_) return particle;
+  const auto& of = mesh_file_->repair.vertex;
+  return static_cast<int>(std::find(of.begin(), of.end(), particle) - of.begin());
+}
+
+template <class Cloth>
+void Subject::add_contact(const ContactDescription& description, const Cloth& cloth, Scene& scene) {
+  contact_ = description.contact;
+  visit_edges(cloth, [&](int i, int j, double length) {
+    if (contact_->thickness <= length) return;
+    const Location at{description.source, description.thickness_line};
+    at.fail("'thickness' is " + shown(contact_->thickness) + " m, expected at most the edge " +
+            std::to_string(number_in_file(i)) + "-" + std::to_string(number_in_file(j)) + " of " +
+            shown(length) + " m");
+  });
+  if (std::holds_alternative<Penalty>(contact_->model)) scene.add(penalty_terms(*contact_));
+}
+
+void Subject::expect_apart(const ContactDescription& description) {
+  const Vector x = initial_state().x;
+  const auto fail = [&](const Intersection& found, const std::string& what, const char* expected) {
+    const Location at{description.source, description.obstacle_lines[found.obstacle]};
+    at.fail("obstacle " + std::to_string(found.obstacle) + " holds " + what + " of the cloth at the start, " +
+            shown(found.depth) + " m deep, expected " + expected);
+  };
+  if (const auto found =
+          first_particle_inside(contact_->obstacles, contact_->thickness, scene()->positions(x)))
+    fail(*found, (mesh_file_ ? "vertex " : "particle ") + std::to_string(number_in_file(found->index)),
+         contact_->thickness > 0 ? "them apart by the thickness" : "them apart");
+  if (const auto found = first_face_inside(contact_->obstacles, vertices(x), faces_))
+    fail(*found, "face " + std::to_string(found->index), "them apart");
+}
+
+std::unique_ptr<ContactFilter> Subject::contact_filter() const {
+  return contact_ ? make_contact_filter(*contact_, scene()->free_masses()) : nullptr;
 }
 
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
@@ -254,7 +304,21 @@ std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
 
 std::optional<StructuralMatrices> Subject::every_pose() const {
   if (!net_) return std::nullopt;
-  return springstab::every_pose(*net_, pinned_, {damping().d0, damping().alpha});
+  StructuralMatrices all = springstab::every_pose(*net_, pinned_, {damping().d0, damping().alpha});
+  if (const auto contact = contact_bound()) all = in_any_contact(std::move(all), *contact, damping().alpha);
+  return all;
+}
+
+std::optional<ContactBound> Subject::contact_bound() const {
+  const auto* penalty = contact_ ? std::get_if<Penalty>(&contact_->model) : nullptr;
+  if (!penalty) return std::nullopt;
+  const auto most = static_cast<double>(contact_->obstacles.size());
+  return ContactBound{most * penalty->stiffness, most * penalty->damping};
+}
+
+void expect_no_contact(const Subject& subject, const std::string& option) {
+  if (subject.contact())
+    throw InputError(option, 0, "takes no account of contact, expected a scene without 'contact'");
 }
 
 void expect_designable(const Model& model) {

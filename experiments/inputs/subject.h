@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/limits/penalty_contact.h"
 #include "analysis/model.h"
 #include "experiments/inputs/mesh_input.h"
 #include "experiments/inputs/scene_description.h"
+#include "solvers/contact/contact_filter.h"
 
 namespace springstab {
 
@@ -58,10 +60,17 @@ class Subject : public Model {
   /// Of a scene; nothing for matrices.
   const std::optional<SceneSize>& scene_size() const { return size_; }
 
+  /// Where a scene's particles meet obstacles.
+  const std::optional<Contact>& contact() const { return contact_; }
+  /// What that takes between steps; null where it takes nothing.
+  std::unique_ptr<ContactFilter> contact_filter() const;
+  /// Of a penalty, what it adds to K and D at most.
+  std::optional<ContactBound> contact_bound() const;
+
   /// Whether a grid's diagonals alternate and nothing is made of triangles.
   bool has_unused_diagonals() const { return unused_diagonals_; }
 
-  /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
+  /// Of a scene of springs alone: matrices that no pose and no contact exceeds (solvers/scene/every_pose.h).
   std::optional<StructuralMatrices> every_pose() const;
 
  private:
@@ -69,6 +78,10 @@ class Subject : public Model {
   template <class Cloth>
   void place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
              const std::string& source);
+  template <class Cloth>
+  void add_contact(const ContactDescription& description, const Cloth& cloth, Scene& scene);
+  void expect_apart(const ContactDescription& description);
+  int number_in_file(int particle) const;
   void build_matrices(const InputOptions& options, bool any_matrices);
 
   Faces faces_;
@@ -78,11 +91,15 @@ class Subject : public Model {
   std::optional<SceneSize> size_;
   bool unused_diagonals_ = false;
   std::optional<Material> material_;
+  std::optional<Contact> contact_;
   Eigen::Vector3d stretch_{1, 1, 1};
 };
 
 /// Throws InputError where alpha cannot be left to the design.
 void expect_designable(const Model& model);
+
+/// Throws InputError(option, ...) where the model has contact, which `option` takes no account of.
+void expect_no_contact(const Subject& subject, const std::string& option);
 
 /// Whether a file is a scene, by its suffix.
 bool is_scene_file(const std::string& path);

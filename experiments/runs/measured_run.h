@@ -28,6 +28,6 @@ struct MeasuredRun {
 /// Carries out the plan from `start`, as simulate() does.
 MeasuredRun measured_run(System& system, std::string_view method, const StepPlan& plan,
                          const EnergyWatch& watch, const State<Vector>& start, const Observer& observe = {},
-                         const StepPolicy& policy = {});
+                         const StepPolicy& policy = {}, StepFilter* filter = nullptr);
 
 }  // namespace springstab

@@ -56,6 +56,7 @@ class Scene final : public System {
   const RayleighDamping& damping() const { return damping_; }
   bool has_own_damping() const { return !terms_.damping.empty(); }
   const SceneTerms& terms() const { return terms_; }
+  const std::vector<double>& free_masses() const { return mass_; }  // [kg]
   double total_free_mass() const;
   const Eigen::Vector3d& gravity() const { return gravity_; }
 

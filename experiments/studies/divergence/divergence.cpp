@@ -86,6 +86,7 @@ Scenes subjects(const DivergenceOptions& options) {
     input.file = file;
     if (!is_scene_file(file)) input.pin = options.pin;
     Subject subject(input);
+    expect_no_contact(subject, file);
     if (subject.scene()->has_own_damping())
       throw InputError(file, 0, "has a material with damping, expected none: this study sets the damping");
     print_mesh_notes(subject);

@@ -101,6 +101,7 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
   check(options);
   const std::vector<Method> methods = methods_of(options.methods);
   Subject subject(options.input);
+  expect_no_contact(subject, "work-precision");
   print_mesh_notes(subject);
   print_size_warning(subject);
   Problem problem(title_of(options.input), std::move(subject), options.duration, common);

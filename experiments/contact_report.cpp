@@ -1,0 +1,113 @@
+#include "experiments/contact_report.h"
+
+#include <algorithm>
+
+#include "analysis/limits/penalty_contact.h"
+#include "analysis/structure_limits.h"
+
+namespace springstab {
+namespace {
+
+const char* name(const ContactModel& model) {
+  static constexpr const char* names[] = {"impulses", "inelastic", "penalty"};
+  return names[model.index()];
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
+// With all the contact there can be.
+StructureLimits limits_in_contact(Subject& subject, const State<Vector>& start, double safety,
+                                  std::uint64_t seed, bool certify) {
+  Structure structure = in_any_contact(subject.structure(start), *subject.contact_bound());
+  return StructureLimits(std::move(structure), {.safety = safety, .certify = certify, .seed = seed});
+}
+
+}  // namespace
+
+Json json_of(const ContactCounts& c) {
+  return {{"pairs_tested", c.pairs},
+          {"impulses", c.impulses},
+          {"lifts", c.lifts},
+          {"passes", c.passes},
+          {"unresolved", c.unresolved},
+          {"normal_work", c.normal_work},
+          {"friction_work", c.friction_work},
+          {"obstacle_work", c.obstacle_work},
+          {"largest_rise", c.largest_rise}};
+}
+
+ContactCounts contact_counts_of(const Json& json) {
+  return {json.at("pairs_tested"),  json.at("impulses"),      json.at("lifts"),
+          json.at("passes"),        json.at("unresolved"),    json.at("normal_work"),
+          json.at("friction_work"), json.at("obstacle_work"), json.at("largest_rise")};
+}
+
+void add_contact(Json& report, const ContactCounts& counts) {
+  for (const auto& [key, value] : json_of(counts).items())
+    report[value.is_number_integer() ? "counts" : "energy"]["contact"][key] = value;
+}
+
+std::string contact_text(const ContactCounts& c) {
+  std::string out = text("contact: %ld impulses, %ld particles put back on a surface; it took %.4g J",
+                         c.impulses, c.lifts, -c.normal_work);
+  if (c.friction_work != 0) out += text(", friction %.4g J", -c.friction_work);
+  if (c.obstacle_work != 0) out += text("; moving obstacles gave %.4g J", c.obstacle_work);
+  if (c.unresolved > 0) out += text("; %ld times obstacles left a particle no room", c.unresolved);
+  return out + '\n';
+}
+
+bool is_proved(const Contact& contact, const std::string& method) {
+  const auto proved = [](const Obstacle& o) { return is_flat(o) && o.velocity.isZero(0); };
+  return method == "symplectic-euler" && std::holds_alternative<LandingImpulses>(contact.model) &&
+         std::all_of(contact.obstacles.begin(), contact.obstacles.end(), proved);
+}
+
+ContactLimits::ContactLimits(Subject& subject, const State<Vector>& start,
+                             const std::vector<std::string>& methods, double safety)
+    : contact_(*subject.contact()) {
+  for (const std::string& method : methods)
+    (is_proved(contact_, method) ? proved_ : measured_).push_back(method);
+  if (subject.contact_bound())
+    any_contact_ = limits_in_contact(subject, start, safety, 1, true).limits("symplectic-euler").h_certified;
+}
+
+Json ContactLimits::json() const {
+  Json json{{"model", name(contact_.model)},
+            {"obstacles", contact_.obstacles.size()},
+            {"thickness", contact_.thickness},
+            {"friction", contact_.friction},
+            {"proved", proved_},
+            {"measured", measured_}};
+  if (std::holds_alternative<Penalty>(contact_.model))
+    json["any_contact"] = {{"method", "symplectic-euler"}, {"h_certified", number(any_contact_)}};
+  return json;
+}
+
+std::string ContactLimits::text_of() const {
+  std::string out;
+  if (std::holds_alternative<Penalty>(contact_.model)) {
+    out = "\ncontact by springs: these limits are for the contact there is at the state given";
+    if (any_contact_)
+      out += text("; symplectic-euler is stable below %.6g s in any contact: proved", *any_contact_);
+    return out + '\n';
+  }
+  const std::string model = std::string("\ncontact (") + name(contact_.model) + "): ";
+  if (!proved_.empty())
+    out += model +
+           "proved, at every step below its limit contact never raises the energy: " + joined(proved_) + '\n';
+  if (!measured_.empty())
+    out += model + "measured, no proof that the limit holds in contact: " + joined(measured_) + '\n';
+  return out;
+}
+
+std::optional<double> step_in_contact(Subject& subject, const State<Vector>& start, const std::string& method,
+                                      double safety, std::uint64_t seed) {
+  if (!subject.contact_bound()) return std::nullopt;
+  return limits_in_contact(subject, start, safety, seed, false).limits(method).recommended;
+}
+
+}  // namespace springstab

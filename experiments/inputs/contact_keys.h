@@ -1,0 +1,16 @@
+// The key `contact` of a scene file.
+#pragma once
+
+#include <string>
+
+#include "experiments/inputs/json_with_lines.h"
+#include "experiments/inputs/scene_description.h"
+
+namespace springstab {
+
+/// {"obstacles": [{"plane": {"point", "normal"}} or {"sphere": {"center", "radius"}}, with "velocity"],
+/// "thickness", "friction", "model": "impulses", "inelastic" or {"penalty": {"stiffness", "damping"}}}.
+/// Throws InputError(source, line, ...).
+ContactDescription read_contact(const std::string& source, const JsonValue& json);
+
+}  // namespace springstab

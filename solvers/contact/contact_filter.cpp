@@ -1,0 +1,25 @@
+#include "solvers/contact/contact_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solvers/contact/impulses.h"
+#include "solvers/contact/penalty.h"
+
+namespace springstab {
+
+std::unique_ptr<ContactFilter> make_contact_filter(const Contact& contact, const std::vector<double>& mass) {
+  if (!std::holds_alternative<Penalty>(contact.model)) return std::make_unique<Impulses>(contact, mass);
+  if (contact.friction == 0) return nullptr;
+  return std::make_unique<PenaltyFriction>(contact, mass);
+}
+
+EnergyWatch with_obstacles(EnergyWatch watch, const Contact& contact) {
+  double fastest = 0;
+  for (const Obstacle& obstacle : contact.obstacles) fastest = std::max(fastest, obstacle.velocity.norm());
+  const double root = std::sqrt(std::max(watch.initial_energy, 0.)) + 2 * fastest * std::sqrt(watch.mass / 2);
+  if (fastest > 0) watch.initial_energy = root * root;
+  return watch;
+}
+
+}  // namespace springstab

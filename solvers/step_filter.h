@@ -1,0 +1,17 @@
+// What happens to the state after a step, whatever method took it, as contact does.
+#pragma once
+
+#include "solvers/state.h"
+#include "solvers/system.h"
+
+namespace springstab {
+
+/// Changes states between steps of a run (simulation.h).
+class StepFilter {
+ public:
+  virtual ~StepFilter() = default;
+  /// `after` is what a step of h [s] has made of `before`, at the time t [s]. Whether it was changed.
+  virtual bool apply(double t, double h, const State<Vector>& before, State<Vector>& after) = 0;
+};
+
+}  // namespace springstab

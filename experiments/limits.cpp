@@ -10,6 +10,7 @@
 #include "experiments/cheapest_report.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
+#include "experiments/for_step_report.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
@@ -183,6 +184,7 @@ void check(const CommonOptions& common, const LimitsOptions& options) {
   if (!options.method.empty() && !options.methods.empty())
     throw InputError("--method, --methods", 0, "are both given, expected one of them");
   check_cheapest(options);
+  check_for_step(common, options);
 }
 
 Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
@@ -248,6 +250,17 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
                         std::string(method).c_str(), *limits.every_pose);
 }
 
+std::vector<MethodAnswer> ask(StructureLimits& answer, const std::vector<Method>& methods, double step,
+                              const Subject& subject, Waiting& waiting) {
+  ForStep question(answer, step, subject.unknowns_a_particle());
+  std::vector<MethodAnswer> all;
+  for (const Method& method : methods) {
+    waiting.now("what would make " + method.name() + " hold");
+    all.push_back({method, question.of(method)});
+  }
+  return all;
+}
+
 }  // namespace
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
@@ -285,6 +298,9 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     waiting->now("the cheapest method");
     cheapest.emplace(answer, subject, start, methods, asked);
   }
+  const std::optional<double> wanted = wanted_step(options);
+  const std::vector<MethodAnswer> answers =
+      wanted ? ask(answer, methods, *wanted, subject, *waiting) : std::vector<MethodAnswer>();
   waiting.reset();
   if (common.json) {
     Json json = report(answer, rows, options.safety, subject);
@@ -293,10 +309,12 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
         add_steps(json["methods"][i], *cheapest, methods[i], rows[i].limits, asked);
       json["cheapest"] = cheapest_json(*cheapest, asked);
     }
+    if (wanted) json["for_step"] = for_step_json(answers, *wanted, subject);
     print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
     if (answer.k0().converged) print_cheapest(*cheapest, answer, methods, asked);
+    if (wanted && answer.k0().converged) print_for_step(answers, *wanted, subject);
   }
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))

@@ -177,6 +177,11 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix),
                      implicit = read(options.implicit_damping_matrix);
+  const Eigen::VectorXd weight = m.size() > 0
+                                     ? Eigen::VectorXd(m.cwiseAbs() * Eigen::VectorXd::Ones(m.cols()))
+                                     : Eigen::VectorXd::Ones(k.rows());
+  for (long i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0) kept_.push_back(i);
   const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix, &options.implicit_damping_matrix})
@@ -250,6 +255,26 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, std
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
   std::vector<Eigen::Vector3d> particles = scene()->positions(x);
   return mesh_file_ ? file_vertices(*mesh_file_, particles, stretch_) : particles;
+}
+
+std::vector<long> Subject::vertex_numbers() const {
+  std::vector<long> first(static_cast<std::size_t>(scene()->particles()));
+  std::iota(first.begin(), first.end(), 0);
+  if (!mesh_file_) return first;
+  const std::vector<int>& particle = mesh_file_->repair.vertex;
+  for (long v = std::ssize(particle) - 1; v >= 0; --v)
+    if (particle[static_cast<std::size_t>(v)] >= 0)
+      first[static_cast<std::size_t>(particle[static_cast<std::size_t>(v)])] = v;
+  return first;
+}
+
+std::vector<long> Subject::particle_numbers() const {
+  if (!scene()) return kept_;
+  std::vector<long> numbers;
+  const std::vector<long> all = vertex_numbers();
+  for (int i = 0; i < std::ssize(all); ++i)
+    if (!std::ranges::binary_search(pinned_, i)) numbers.push_back(all[static_cast<std::size_t>(i)]);
+  return numbers;
 }
 
 std::optional<StructuralMatrices> Subject::every_pose() const {

@@ -61,6 +61,14 @@ class Subject : public Model {
   /// Whether a grid's diagonals alternate and nothing is made of triangles.
   bool has_unused_diagonals() const { return unused_diagonals_; }
 
+  /// How many unknowns move together: 3 of a particle, 1 of matrices.
+  int unknowns_a_particle() const { return scene() ? 3 : 1; }
+  /// Of each free particle, or unknown of matrices that was not condensed, its number in the input, from 0:
+  /// of a mesh file the first vertex that lies there.
+  std::vector<long> particle_numbers() const;
+  /// The same of all particles of a scene, pinned ones too.
+  std::vector<long> vertex_numbers() const;
+
   /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
   std::optional<StructuralMatrices> every_pose() const;
 
@@ -75,6 +83,7 @@ class Subject : public Model {
   std::optional<MeshFile> mesh_file_;
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
+  std::vector<long> kept_;  // of matrices
   std::optional<SceneSize> size_;
   bool unused_diagonals_ = false;
   std::optional<Material> material_;

@@ -70,31 +70,16 @@ std::string verdict(const StepAnswer& answer) {
 using Reasons = std::map<std::string, std::string>;  // what is not answered, and why: of which methods
 
 template <class Value>
-void add_reason(const std::string& what, const Found<Value>& found, const Method& method, Reasons& reasons) {
+void add_reason(const std::string& what, const Found<Value>& found, const std::string& method,
+                Reasons& reasons) {
   if (found.value) return;
   std::string& list = reasons[what + ", " + std::string(found.reason)];
-  list += (list.empty() ? "" : ", ") + method.name();
+  list += (list.empty() ? "" : ", ") + method;
 }
 
-void print_changes(std::span<const MethodAnswer> answers, const char* particles) {
-  std::cout << text(
-      "\nwhat alone would make it hold; d0, alpha and dampers stay\n%-26s %12s %24s %12s %24s %9s\n",
-      "method", "stiffness x", "alpha [s]", "mass x", text("kg to %s", particles).c_str(), "substeps");
-  Reasons reasons;
-  for (const auto& [method, answer] : answers) {
-    if (answer.holds != false) continue;
-    std::cout << text("%-26s %12s %24s %12s %24s %9s\n", method.name().c_str(),
-                      cell_of(answer.stiffness_factor).c_str(), cell_of(answer.alpha).c_str(),
-                      cell_of(answer.mass_factor).c_str(), cell_of(answer.mass_scaling).c_str(),
-                      answer.substeps.value ? text("%ld", *answer.substeps.value).c_str() : "-");
-    add_reason("no factor on the stiffness", answer.stiffness_factor, method, reasons);
-    add_reason("no alpha", answer.alpha, method, reasons);
-    add_reason("no factor on the masses", answer.mass_factor, method, reasons);
-    add_reason("no added masses", answer.mass_scaling, method, reasons);
-    add_reason("no number of substeps", answer.substeps, method, reasons);
-  }
-  for (const auto& [reason, list] : reasons) std::cout << '\n' << reason << ": " << list;
-  std::cout << (reasons.empty() ? "" : "\n");
+std::optional<double> wanted_step(const LimitsOptions& options) {
+  if (options.substeps > 0 && options.frame_rate) return 1 / (*options.frame_rate * options.substeps);
+  return options.for_step;
 }
 
 }  // namespace
@@ -111,32 +96,59 @@ void check_for_step(const CommonOptions& common, const LimitsOptions& options) {
     throw InputError("--substeps", 0, "is for a frame, expected --frame-rate beside it");
 }
 
-std::optional<double> wanted_step(const LimitsOptions& options) {
-  if (options.substeps > 0 && options.frame_rate) return 1 / (*options.frame_rate * options.substeps);
-  return options.for_step;
+ForStepReport::ForStepReport(const LimitsOptions& options, StructureLimits& answer,
+                             std::span<const Method> methods, const Subject& subject, Waiting& waiting)
+    : step_(wanted_step(options)), particles_(subject.scene() ? "particles" : "unknowns") {
+  if (!step_) return;
+  numbers_ = subject.particle_numbers();
+  ForStep question(answer, *step_, subject.unknowns_a_particle());
+  for (const Method& method : methods) {
+    waiting.now("what would make " + method.name() + " hold");
+    rows_.push_back({method.name(), question.of(method)});
+  }
 }
 
-Json for_step_json(std::span<const MethodAnswer> answers, double step, const Subject& subject) {
-  const std::vector<long> numbers = subject.particle_numbers();
-  Json json = Json::object();
-  for (const auto& [method, answer] : answers) json[method.name()] = answer_json(answer, step, numbers);
-  return json;
+void ForStepReport::add_to(Json& json) const {
+  if (!step_) return;
+  json["for_step"] = Json::object();
+  for (const auto& [method, answer] : rows_) json["for_step"][method] = answer_json(answer, *step_, numbers_);
 }
 
-void print_for_step(std::span<const MethodAnswer> answers, double step, const Subject& subject) {
-  std::cout << text("\nat a step of %.6g s\n%-26s %-10s %12s\n", step, "method", "holds", "h_max/step");
+void ForStepReport::print() const {
+  if (!step_) return;
+  std::cout << text("\nat a step of %.6g s\n%-26s %-10s %12s\n", *step_, "method", "holds", "h_max/step");
   bool changes = false;
   std::map<std::string_view, std::string> unknown;
-  for (const auto& [method, answer] : answers) {
-    std::cout << text("%-26s %-10s %12s\n", method.name().c_str(), verdict(answer).c_str(),
+  for (const auto& [method, answer] : rows_) {
+    std::cout << text("%-26s %-10s %12s\n", method.c_str(), verdict(answer).c_str(),
                       answer.margin ? text("%.6g", *answer.margin).c_str() : "-");
     changes = changes || answer.holds == false;
     if (answer.holds) continue;
     std::string& list = unknown[answer.unknown];
-    list += (list.empty() ? "" : ", ") + method.name();
+    list += (list.empty() ? "" : ", ") + method;
   }
   for (const auto& [reason, list] : unknown) std::cout << "\nnot known, " << reason << ": " << list << '\n';
-  if (changes) print_changes(answers, subject.scene() ? "particles" : "unknowns");
+  if (changes) print_changes();
+}
+
+void ForStepReport::print_changes() const {
+  std::cout << text(
+      "\nwhat alone would make it hold; d0, alpha and dampers stay\n%-26s %12s %24s %12s %24s %9s\n",
+      "method", "stiffness x", "alpha [s]", "mass x", text("kg to %s", particles_).c_str(), "substeps");
+  Reasons reasons;
+  for (const auto& [method, answer] : rows_) {
+    if (answer.holds != false) continue;
+    std::cout << text("%-26s %12s %24s %12s %24s %9s\n", method.c_str(),
+                      cell_of(answer.stiffness_factor).c_str(), cell_of(answer.alpha).c_str(),
+                      cell_of(answer.mass_factor).c_str(), cell_of(answer.mass_scaling).c_str(),
+                      answer.substeps.value ? text("%ld", *answer.substeps.value).c_str() : "-");
+    add_reason("no factor on the stiffness", answer.stiffness_factor, method, reasons);
+    add_reason("no alpha", answer.alpha, method, reasons);
+    add_reason("no factor on the masses", answer.mass_factor, method, reasons);
+    add_reason("no added masses", answer.mass_scaling, method, reasons);
+    add_reason("no number of substeps", answer.substeps, method, reasons);
+  }
+  for (const auto& [reason, list] : reasons) std::cout << '\n' << reason << ": " << list << '\n';
 }
 
 }  // namespace springstab

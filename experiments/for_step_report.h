@@ -1,7 +1,9 @@
 // What `limits` says of a wanted step: --for-step H, or --frame-rate with --substeps.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/limits/for_step.h"
@@ -15,16 +17,27 @@ namespace springstab {
 /// Throws InputError for a step or a number of substeps that is none.
 void check_for_step(const CommonOptions& common, const LimitsOptions& options);
 
-/// [s]; nothing where none is asked for.
-std::optional<double> wanted_step(const LimitsOptions& options);
+/// Nothing is said where no step is wanted.
+class ForStepReport {
+ public:
+  ForStepReport(const LimitsOptions& options, StructureLimits& answer, std::span<const Method> methods,
+                const Subject& subject, Waiting& waiting);
 
-struct MethodAnswer {
-  Method method;
-  StepAnswer answer;
+  /// `for_step`, by the method's name.
+  void add_to(Json& json) const;
+  void print() const;
+
+ private:
+  struct Row {
+    std::string method;
+    StepAnswer answer;
+  };
+  void print_changes() const;
+
+  std::optional<double> step_;  // [s]
+  std::vector<Row> rows_;
+  std::vector<long> numbers_;  // of the particles, or unknowns, in the input
+  const char* particles_;
 };
-
-/// By the method's name.
-Json for_step_json(std::span<const MethodAnswer> answers, double step, const Subject& subject);
-void print_for_step(std::span<const MethodAnswer> answers, double step, const Subject& subject);
 
 }  // namespace springstab

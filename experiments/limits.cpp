@@ -15,6 +15,7 @@
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
 #include "experiments/limits_words.h"
+#include "experiments/stiffest_report.h"
 #include "solvers/cpu_time.h"
 #include "solvers/io/input_error.h"
 
@@ -250,17 +251,6 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
                         std::string(method).c_str(), *limits.every_pose);
 }
 
-std::vector<MethodAnswer> ask(StructureLimits& answer, const std::vector<Method>& methods, double step,
-                              const Subject& subject, Waiting& waiting) {
-  ForStep question(answer, step, subject.unknowns_a_particle());
-  std::vector<MethodAnswer> all;
-  for (const Method& method : methods) {
-    waiting.now("what would make " + method.name() + " hold");
-    all.push_back({method, question.of(method)});
-  }
-  return all;
-}
-
 }  // namespace
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
@@ -298,9 +288,9 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     waiting->now("the cheapest method");
     cheapest.emplace(answer, subject, start, methods, asked);
   }
-  const std::optional<double> wanted = wanted_step(options);
-  const std::vector<MethodAnswer> answers =
-      wanted ? ask(answer, methods, *wanted, subject, *waiting) : std::vector<MethodAnswer>();
+  const ForStepReport wanted(options, answer, methods, subject, *waiting);
+  waiting->now("the stiffest mode");
+  const StiffestReport stiffest(options, common, answer, subject, start);
   waiting.reset();
   if (common.json) {
     Json json = report(answer, rows, options.safety, subject);
@@ -309,12 +299,16 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
         add_steps(json["methods"][i], *cheapest, methods[i], rows[i].limits, asked);
       json["cheapest"] = cheapest_json(*cheapest, asked);
     }
-    if (wanted) json["for_step"] = for_step_json(answers, *wanted, subject);
+    wanted.add_to(json);
+    stiffest.add_to(json);
     print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
-    if (answer.k0().converged) print_cheapest(*cheapest, answer, methods, asked);
-    if (wanted && answer.k0().converged) print_for_step(answers, *wanted, subject);
+    if (answer.k0().converged) {
+      print_cheapest(*cheapest, answer, methods, asked);
+      wanted.print();
+      stiffest.print();
+    }
   }
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))

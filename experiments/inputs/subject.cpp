@@ -235,6 +235,9 @@ void Subject::place(const Cloth& cloth, const SceneDescription& description, std
   pinned_ = std::move(pinned);
   stretch_ = description.initial.stretch;
   size_ = size_of(cloth);
+  visit_elements_ = [cloth](const auto& at, const ElementVisitor& visit) {
+    visit_elements(cloth, at, visit);
+  };
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
   if constexpr (std::is_same_v<Cloth, TriangleCloth>)
     if (mesh_file_) {
@@ -275,6 +278,17 @@ std::vector<long> Subject::particle_numbers() const {
   for (int i = 0; i < std::ssize(all); ++i)
     if (!std::ranges::binary_search(pinned_, i)) numbers.push_back(all[static_cast<std::size_t>(i)]);
   return numbers;
+}
+
+std::optional<ElementsOf> Subject::elements(const Vector& x) const {
+  if (!scene()) return std::nullopt;
+  ElementsOf elements{
+      [this, at = scene()->positions(x)](const ElementVisitor& visit) { visit_elements_(at, visit); },
+      std::vector<int>(static_cast<std::size_t>(scene()->particles()))};
+  int free = 0;
+  for (int i = 0; i < scene()->particles(); ++i)
+    elements.place[static_cast<std::size_t>(i)] = std::ranges::binary_search(pinned_, i) ? -1 : free++;
+  return elements;
 }
 
 std::optional<StructuralMatrices> Subject::every_pose() const {

@@ -2,10 +2,12 @@
 // grid) or a system of matrices.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/limits/stiffest_motion.h"
 #include "analysis/model.h"
 #include "experiments/inputs/mesh_input.h"
 #include "experiments/inputs/scene_description.h"
@@ -69,6 +71,9 @@ class Subject : public Model {
   /// The same of all particles of a scene, pinned ones too.
   std::vector<long> vertex_numbers() const;
 
+  /// Of a scene whose unknowns are x; nothing for matrices. Refers to this object.
+  std::optional<ElementsOf> elements(const Vector& x) const;
+
   /// Of a scene of springs alone: matrices that no pose exceeds (solvers/scene/every_pose.h).
   std::optional<StructuralMatrices> every_pose() const;
 
@@ -84,6 +89,7 @@ class Subject : public Model {
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
   std::vector<long> kept_;  // of matrices
+  std::function<void(const std::vector<Eigen::Vector3d>& at, const ElementVisitor& visit)> visit_elements_;
   std::optional<SceneSize> size_;
   bool unused_diagonals_ = false;
   std::optional<Material> material_;

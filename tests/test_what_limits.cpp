@@ -268,4 +268,50 @@ BOOST_AUTO_TEST_CASE(where_there_is_no_mode_none_is_made_up) {
   BOOST_TEST(!std::filesystem::exists(command.folder() / "mode.csv"));
 }
 
+// What is typed is what a scene file with these numbers says.
+BOOST_AUTO_TEST_CASE(numbers_of_the_material_on_the_command_line) {
+  const Command command;
+  const auto answer = [&](const std::string& arguments) {
+    const Outcome outcome = command("limits " + arguments + " --json");
+    BOOST_TEST_REQUIRE(outcome.status == 0);
+    return outcome.json();
+  };
+  const auto expect_scene = [&](const std::string& material, const std::string& options) {
+    command.file("scene.json", R"({"geometry": {"grid": [5, 4], "spacing": 0.2}, "material": )" + material +
+                                   R"(, "pins": [0, 3]})");
+    const auto of_file = answer("scene.json"),
+               typed = answer("--grid 5x4 --spacing 0.2 --pin 0,3 " + options);
+    BOOST_TEST_CONTEXT(options) {
+      BOOST_TEST(typed["k0"]["value"] == of_file["k0"]["value"]);
+      BOOST_TEST(typed["total_mass"] == of_file["total_mass"]);
+    }
+    return typed["k0"]["value"].get<double>();
+  };
+  const double springs = expect_scene(R"({"structural": 70, "bending": 3, "area_density": 0.35})",
+                                      "--stretch 70 --bend 3 --area-density 0.35");
+  const double triangles =
+      expect_scene(R"({"model": "baraff-witkin", "stretch": 700, "bending": 0.002, "area_density": 0.35})",
+                   "--material baraff-witkin --stretch 700 --bend 0.002 --area-density 0.35");
+  BOOST_TEST(springs > 0);
+  BOOST_TEST(triangles > 0);
+
+  // Twenty particles alike: k0 goes with 1/M.
+  const auto heavy = answer("--grid 5x4 --mass-total 3"), light = answer("--grid 5x4 --mass-total 1.5");
+  BOOST_TEST(heavy["total_mass"].get<double>() == 3, boost::test_tools::tolerance(1e-12));
+  BOOST_TEST(2 * heavy["k0"]["value"].get<double>() == light["k0"]["value"].get<double>(),
+             boost::test_tools::tolerance(1e-9));
+
+  command.file("K.mtx", "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 2\n");
+  command.file("scene.json", R"({"geometry": {"grid": [5, 4]}})");
+  for (const char* arguments : {"--grid 3x3 --stretch 0", "--grid 3x3 --bend -1",
+                                "--grid 3x3 --mass-total nan", "--grid 3x3 --area-density 1 --mass-total 1",
+                                "scene.json --bend 1", "--stiffness K.mtx --mass-total 1"}) {
+    const Outcome outcome = command(std::string("limits ") + arguments);
+    BOOST_TEST_CONTEXT(arguments << ": " << outcome.err) {
+      BOOST_TEST(outcome.status == 2);
+      BOOST_TEST(lines(outcome.err) == 1);
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

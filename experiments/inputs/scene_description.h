@@ -56,7 +56,8 @@ struct SceneDescription {
   Eigen::Vector3d gravity{0, -9.81, 0};  // [m/s²]
   RayleighDescription damping;
   InitialDescription initial;
-  double scale = 1;  // of the geometry: what its numbers are [m]
+  double scale = 1;                    // of the geometry: what its numbers are [m]
+  std::optional<double> total_mass{};  // to which all masses are scaled [kg]
 };
 
 /// The same particles by ascending ranges that are apart from each other.

@@ -31,6 +31,11 @@ SceneDescription describe(const InputOptions& options) {
     if (options.spacing || !options.material.empty() || !options.pin.empty() || !options.diagonals.empty())
       throw InputError(options.file, 0,
                        "--spacing, --diagonals, --material and --pin stand in the scene file itself");
+    if (options.numbers.any())
+      throw InputError(
+          options.file, 0,
+          "--area-density, --stretch, --bend and --mass-total are for grids and meshes, the scene "
+          "file has its material itself");
     SceneDescription description = read_scene_file(options.file);
     if (options.scale && description.scale != 1)
       throw InputError(options.file, 0,
@@ -53,6 +58,7 @@ SceneDescription describe(const InputOptions& options) {
   }
   description.material = named_material(options.material.empty() ? "default" : options.material,
                                         is_solid(description.geometry), "--material", 0);
+  apply(options.numbers, description);
   if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
   return description;
 }
@@ -134,6 +140,12 @@ void scale_by(double scale, std::vector<Eigen::Vector3d>& vertices) {
   for (Eigen::Vector3d& vertex : vertices) vertex *= scale;
 }
 
+// Scales the masses so that their sum is `total`.
+void weigh(double total, std::vector<double>& masses) {
+  const double sum = std::accumulate(masses.begin(), masses.end(), 0.0);
+  for (double& mass : masses) mass *= total / sum;
+}
+
 // At rest but for `stretch` and `velocity`.
 State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
   State<Vector> state = scene.rest_state();
@@ -171,6 +183,9 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
       !options.diagonals.empty())
     throw InputError(options.stiffness, 0,
                      "--spacing, --diagonals, --scale, --material and --pin are for grids and meshes");
+  if (options.numbers.any())
+    throw InputError(options.stiffness, 0,
+                     "--area-density, --stretch, --bend and --mass-total are for grids and meshes");
   const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
   const auto read = [&](const std::string& path) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
@@ -230,8 +245,9 @@ void Subject::build_scene(const SceneDescription& description) {
 }
 
 template <class Cloth>
-void Subject::place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
+void Subject::place(Cloth cloth, const SceneDescription& description, std::vector<int> pinned,
                     const std::string& source) {
+  if (description.total_mass) weigh(*description.total_mass, cloth.mass);
   pinned_ = std::move(pinned);
   stretch_ = description.initial.stretch;
   size_ = size_of(cloth);

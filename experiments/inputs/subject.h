@@ -9,6 +9,7 @@
 
 #include "analysis/limits/stiffest_motion.h"
 #include "analysis/model.h"
+#include "experiments/inputs/material_options.h"
 #include "experiments/inputs/mesh_input.h"
 #include "experiments/inputs/scene_description.h"
 
@@ -22,6 +23,7 @@ struct InputOptions {
   std::string material, pin;      // with grid or a mesh
   std::optional<double> scale;    // of a scene's geometry
   std::string diagonals;          // with grid
+  MaterialOptions numbers{};      // with grid or a mesh
   std::string stiffness, mass, damping_matrix, implicit_damping_matrix;
   bool sum_duplicates = false;  // of these matrices' entries
   std::string rayleigh;         // "d0,alpha": damping of matrices beside D
@@ -80,7 +82,7 @@ class Subject : public Model {
  private:
   void build_scene(const SceneDescription& description);
   template <class Cloth>
-  void place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
+  void place(Cloth cloth, const SceneDescription& description, std::vector<int> pinned,
              const std::string& source);
   void build_matrices(const InputOptions& options, bool any_matrices);
 

@@ -62,7 +62,7 @@ std::string cell_of(const Found<MassScaling>& found) {
               found.value->proved ? "" : ", not proved");
 }
 
-std::string verdict(const StepAnswer& answer) {
+std::string verdict_on(const StepAnswer& answer) {
   if (!answer.holds) return "unknown";
   return !*answer.holds ? "no" : answer.proved ? "proved" : "yes";
 }
@@ -120,7 +120,7 @@ void ForStepReport::print() const {
   bool changes = false;
   std::map<std::string_view, std::string> unknown;
   for (const auto& [method, answer] : rows_) {
-    std::cout << text("%-26s %-10s %12s\n", method.c_str(), verdict(answer).c_str(),
+    std::cout << text("%-26s %-10s %12s\n", method.c_str(), verdict_on(answer).c_str(),
                       answer.margin ? text("%.6g", *answer.margin).c_str() : "-");
     changes = changes || answer.holds == false;
     if (answer.holds) continue;

@@ -14,11 +14,12 @@ constexpr const char* no_motion =
 
 /// Of symplectic Euler without damping; that of every method goes with 1/√k0.
 double step_of(double k0) { return 2 / std::sqrt(k0); }
-double unused(double bound, double k0) { return 1 - std::sqrt(k0 / bound); }
+double unused_part(double bound, double k0) { return 1 - std::sqrt(k0 / bound); }
 
 Json bound_json(const std::optional<double>& bound, double k0) {
   if (!bound) return nullptr;
-  return {{"k0", number(*bound)}, {"step", number(step_of(*bound))}, {"unused", number(unused(*bound, k0))}};
+  return {
+      {"k0", number(*bound)}, {"step", number(step_of(*bound))}, {"unused", number(unused_part(*bound, k0))}};
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ void StiffestReport::print() const {
   const auto bound = [&](const char* what, const std::optional<double>& value) {
     if (value)
       std::cout << text("k0 is at most %.6g 1/s² by %s, which leaves %.3g %% of the step unused\n", *value,
-                        what, 100 * unused(*value, k0_));
+                        what, 100 * unused_part(*value, k0_));
   };
   std::cout << '\n';
   bound("the stiffest node", motion_->nodal);

@@ -23,13 +23,13 @@ using springstab::test::Outcome;
 
 namespace {
 
-const std::vector<int> pinned{0, 3};
+const std::vector<int> two_held{0, 3};
 
-/// A cloth away from its rest, two particles pinned, and its elements there.
+/// A cloth away from its rest, two particles two_held, and its elements there.
 template <class Cloth>
 struct Displaced {
   explicit Displaced(Cloth of)
-      : cloth(heavier(std::move(of))), scene(cloth, pinned, {0, -9.81, 0}, {}), state(scene.rest_state()) {
+      : cloth(heavier(std::move(of))), scene(cloth, two_held, {0, -9.81, 0}, {}), state(scene.rest_state()) {
     state.x += 0.02 * test::random_vector(state.x.size(), 4);
     structure = structure_of(scene, state);
     elements.visit_all = [this](const ElementVisitor& visit) {
@@ -37,7 +37,7 @@ struct Displaced {
     };
     int free = 0;
     for (int i = 0; i < scene.particles(); ++i)
-      elements.place.push_back(i == pinned[0] || i == pinned[1] ? -1 : free++);
+      elements.place.push_back(i == two_held[0] || i == two_held[1] ? -1 : free++);
   }
   static Cloth heavier(Cloth cloth) {
     for (std::size_t i = 0; i < cloth.mass.size(); ++i)
@@ -53,12 +53,12 @@ struct Displaced {
 };
 
 /// Σ K_e between what can move, and how many elements of each kind.
-struct Sum {
+struct SumOfElements {
   Eigen::MatrixXd stiffness;
   std::map<std::string, long> count;
   std::vector<double> shares;  // of the mode, those of all elements
 
-  Sum(const ElementsOf& elements, Eigen::Index n, const Eigen::VectorXd& mode)
+  SumOfElements(const ElementsOf& elements, Eigen::Index n, const Eigen::VectorXd& mode)
       : stiffness(Eigen::MatrixXd::Zero(n, n)) {
     elements.visit_all(
         [&](std::string_view kind, long index, std::span<const int> particles, const Eigen::MatrixXd& k) {
@@ -89,7 +89,7 @@ void expect_parts_of_the_whole(const Cloth& cloth, const std::map<std::string, l
   BOOST_TEST(u.dot(s.mass * u) == 1, boost::test_tools::tolerance(1e-12));
   BOOST_TEST((s.stiffness * u - k0 * (s.mass * u)).norm() < 1e-8 * (s.stiffness * u).norm());
 
-  Sum sum(displaced.elements, s.size(), u);
+  SumOfElements sum(displaced.elements, s.size(), u);
   BOOST_TEST((sum.stiffness - Eigen::MatrixXd(s.stiffness)).norm() < 1e-13 * sum.stiffness.norm());
   BOOST_TEST(sum.count == count, boost::test_tools::per_element());
   BOOST_TEST(std::accumulate(sum.shares.begin(), sum.shares.end(), 0.0) == k0,

@@ -20,23 +20,23 @@ using springstab::test::Outcome;
 
 namespace {
 
-using Methods = std::vector<std::string>;
+using MethodNames = std::vector<std::string>;
 
-const Methods exact{"symplectic-euler", "implicit-damping-euler", "newmark:beta=0,gamma=0.5"};
-const Methods many{"explicit-euler",
-                   "rk2",
-                   "rk4",
-                   "symplectic-euler",
-                   "velocity-verlet",
-                   "linearized-rk4",
-                   "nystrom4",
-                   "implicit-damping-euler"};
+const MethodNames exact_methods{"symplectic-euler", "implicit-damping-euler", "newmark:beta=0,gamma=0.5"};
+const MethodNames modal_methods{"explicit-euler",
+                                "rk2",
+                                "rk4",
+                                "symplectic-euler",
+                                "velocity-verlet",
+                                "linearized-rk4",
+                                "nystrom4",
+                                "implicit-damping-euler"};
 
-struct Limits {
+struct TwoLimits {
   double h_max, h_certified;
 };
 
-Limits limits_of(const Structure& structure, const StructureChange& change, const Method& method) {
+TwoLimits limits_of_changed(const Structure& structure, const StructureChange& change, const Method& method) {
   StructureLimits limits(changed(structure, change));
   const MethodLimits& l = limits.limits(method);
   return {l.h_max.value_or(0), l.h_certified.value_or(0)};
@@ -50,13 +50,13 @@ struct Asked {
 };
 
 void expect_holds(const Asked& asked, const StructureChange& change) {
-  const Limits limits = limits_of(asked.structure, change, asked.method);
+  const TwoLimits limits = limits_of_changed(asked.structure, change, asked.method);
   BOOST_TEST(limits.h_max > asked.step);
   if (asked.by_proof) BOOST_TEST(limits.h_certified >= asked.step);
 }
 
 void expect_fails(const Asked& asked, const StructureChange& change) {
-  BOOST_TEST(limits_of(asked.structure, change, asked.method).h_max < asked.step);
+  BOOST_TEST(limits_of_changed(asked.structure, change, asked.method).h_max < asked.step);
 }
 
 void expect_scaling(const Asked& asked, const MassScaling& scaling, double uniform, int width) {
@@ -68,7 +68,7 @@ void expect_scaling(const Asked& asked, const MassScaling& scaling, double unifo
   BOOST_TEST(scaling.added_mass <= 1.002 * scaling.least);
   if (uniform > 1)
     BOOST_TEST(scaling.added_mass <= (uniform - 1) * mass.diagonal().sum() / width * (1 + 1e-6));
-  const Limits limits = limits_of(asked.structure, {.added_mass = added}, asked.method);
+  const TwoLimits limits = limits_of_changed(asked.structure, {.added_mass = added}, asked.method);
   BOOST_TEST(limits.h_max > asked.step);
   BOOST_TEST(limits.h_certified >= asked.step);
   expect_fails(asked, {.added_mass = 0.99 * added});
@@ -122,26 +122,25 @@ std::set<std::string> expect_answers(const Structure& structure, const Method& m
   return given;
 }
 
-void expect_all(const Structure& structure, const Methods& methods, int width, double over,
+void expect_all(const Structure& structure, const MethodNames& methods, int width, double over,
                 const std::set<std::string>& expected) {
   std::set<std::string> given;
-  for (const std::string& method : methods)
-    BOOST_TEST_CONTEXT(method << " at " << over << " h_max")
-    given.merge(expect_answers(structure, method, over, width));
+  for (const std::string& method : methods) BOOST_TEST_CONTEXT(method << " at " << over << " h_max")
+  given.merge(expect_answers(structure, method, over, width));
   BOOST_TEST(given == expected, boost::test_tools::per_element());
 }
 
-const std::set<std::string> everything{"alpha", "mass", "scaling", "stiffness", "substeps"};
+const std::set<std::string> all_answers{"alpha", "mass", "scaling", "stiffness", "substeps"};
 
 template <class Cloth>
-Structure structure_of_scene(Cloth cloth, const RayleighDamping& damping) {
+Structure scene_of(Cloth cloth, const RayleighDamping& damping) {
   for (std::size_t i = 0; i < cloth.mass.size(); ++i)
     cloth.mass[i] *= 1 + 0.3 * static_cast<double>((7 * i) % 5);
   Scene scene(cloth, {0, 3}, {0, -9.81, 0}, damping);
   return structure_of(scene, scene.rest_state());
 }
 
-SparseMatrix sparse(const Eigen::MatrixXd& a) { return a.sparseView(0.0, 0.0); }
+SparseMatrix as_sparse(const Eigen::MatrixXd& a) { return a.sparseView(0.0, 0.0); }
 
 }  // namespace
 
@@ -149,7 +148,8 @@ BOOST_AUTO_TEST_SUITE(what_would_hold)
 
 BOOST_AUTO_TEST_CASE(one_oscillator_in_closed_form) {
   const double k = 100, m = 2, step = 0.4;  // H² k/m = 8, symplectic Euler's limit is 4
-  StructureLimits limits(structure_of(prepare(sparse(Eigen::MatrixXd{{k}}), sparse(Eigen::MatrixXd{{m}}))));
+  StructureLimits limits(
+      structure_of(prepare(as_sparse(Eigen::MatrixXd{{k}}), as_sparse(Eigen::MatrixXd{{m}}))));
   const StepAnswer answer = ForStep(limits, step, 1).of("symplectic-euler");
   const boost::test_tools::fpc::percent_tolerance_t<double> tolerance =
       boost::test_tools::fpc::percent_tolerance(1e-5);
@@ -179,7 +179,7 @@ BOOST_AUTO_TEST_CASE(nets_of_modes) {
   for (int i = 0; i < 4; ++i) {
     StructuralMatrices s = test::matrices(random.net(i % 2 == 0));
     s.damping = i < 2 ? SparseMatrix() : SparseMatrix(random.uniform(0, 1) * s.mass + 1e-4 * s.stiffness);
-    expect_all(structure_of(s), many, 3, random.uniform(1.05, 3), everything);
+    expect_all(structure_of(s), modal_methods, 3, random.uniform(1.05, 3), all_answers);
   }
 }
 
@@ -188,7 +188,7 @@ BOOST_AUTO_TEST_CASE(nets_with_dampers) {
   for (int i = 0; i < 6; ++i) {
     const Structure structure = structure_of(test::matrices(random.net(i % 2 == 0), i % 3));
     BOOST_TEST((structure.damping.kind == DampingModel::Kind::general));
-    expect_all(structure, exact, 3, random.uniform(1.05, 2), everything);
+    expect_all(structure, exact_methods, 3, random.uniform(1.05, 2), all_answers);
     if (structure.matrices.size() <= 12)
       expect_all(structure, {"rk4", "rk2"}, 3, 1.3, {"alpha", "mass", "stiffness", "substeps"});
   }
@@ -197,29 +197,29 @@ BOOST_AUTO_TEST_CASE(nets_with_dampers) {
 BOOST_AUTO_TEST_CASE(scenes) {
   const Grid size{4, 5, 0.2};
   BOOST_TEST_CONTEXT("cloth") {
-    expect_all(structure_of_scene(make_cloth(size, ClothMaterial{}), {1, 1e-4}),
-               {"explicit-euler", "rk4", "symplectic-euler"}, 3, 1.2, everything);
+    expect_all(scene_of(make_cloth(size, ClothMaterial{}), {1, 1e-4}),
+               {"explicit-euler", "rk4", "symplectic-euler"}, 3, 1.2, all_answers);
   }
   BOOST_TEST_CONTEXT("net with dampers, d0 and alpha") {
     SpringMaterial material;
     material.damping = {0.01, 0.02, 0.03};
-    const Structure structure = structure_of_scene(make_net(size, material), {0.5, 1e-5});
+    const Structure structure = scene_of(make_net(size, material), {0.5, 1e-5});
     BOOST_TEST((structure.damping.kind == DampingModel::Kind::general));
-    expect_all(structure, exact, 3, 1.3, everything);
+    expect_all(structure, exact_methods, 3, 1.3, all_answers);
   }
   BOOST_TEST_CONTEXT("solid") {
     TetMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1.2, 0}, {0, 0, 0.9}, {1, 1, 1.1}};
     mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
-    expect_all(structure_of_scene(make_solid(mesh, SolidMaterial{}), {0.2, 0}), {"rk4", "symplectic-euler"},
-               3, 1.4, everything);
+    expect_all(scene_of(make_solid(mesh, SolidMaterial{}), {0.2, 0}), {"rk4", "symplectic-euler"}, 3, 1.4,
+               all_answers);
   }
 }
 
 BOOST_AUTO_TEST_CASE(matrices_that_are_not_symmetric) {
   const Eigen::MatrixXd k{{30, -10, 0}, {-14, 35, -25}, {0, -22, 27}};
   const Eigen::MatrixXd m{{1, 0, 0}, {0, 2.5, 0}, {0, 0, 0.7}}, d{{0.3, 0.1, 0}, {0, 0.2, 0}, {0, 0, 0.4}};
-  const Structure structure = structure_of(prepare_nonsymmetric(sparse(k), sparse(m), sparse(d)));
+  const Structure structure = structure_of(prepare_nonsymmetric(as_sparse(k), as_sparse(m), as_sparse(d)));
   expect_all(structure, {"rk4", "rk2"}, 1, 1.3, {"alpha", "mass", "stiffness"});
   StructureLimits limits(structure);
   const StepAnswer answer = ForStep(limits, 10, 1).of("rk4");

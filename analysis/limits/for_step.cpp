@@ -14,10 +14,12 @@ namespace springstab {
 namespace {
 
 constexpr double near_proof = 1e-3;  // of h_max: where the proof is counted on
-// Up to as many unknowns all eigenvalues are computed again for each change: those of the generator, or of a
-// method's own step.
+// Up to as many unknowns all eigenvalues are computed again for each change: those of the generator, or
+// of a method's own step.
 constexpr Eigen::Index few_unknowns = 48, very_few_unknowns = 18;
 
+// Reasons.
+namespace why {
 constexpr std::string_view none_stable = "no positive step is stable, however soft or heavy",
                            damping_limits = "damping alone limits the step",
                            no_alpha = "no alpha was found with which it holds",
@@ -27,6 +29,7 @@ constexpr std::string_view none_stable = "no positive step is stable, however so
                            no_condition = "under this damping the method has no exact condition on matrices",
                            designed = "alpha is fitted to the step already", not_proved = "no step is proved",
                            too_many = "they would be more than 1e15";
+}  // namespace why
 
 /// > 0 where it holds.
 using Slack = std::function<double(double)>;
@@ -70,7 +73,7 @@ struct ForStep::Limit {
   const StabilityRegion& region() const { return stability_region(method); }
   bool searched() const {
     const bool has_function = region().matrix_form() == MatrixForm::stability_function;
-    return modal || condition ||
+    return modal || condition || (takes_part && definite) ||
            answer.structure().matrices.size() <= (has_function ? few_unknowns : very_few_unknowns);
   }
 
@@ -152,8 +155,8 @@ void ForStep::add_changes(const Limit& limit, StepAnswer& result) const {
     result.mass_factor = mass_factor(limit);
     result.alpha = alpha(limit);
   } else {
-    result.stiffness_factor = result.mass_factor = many;
-    result.alpha = many;
+    result.stiffness_factor = result.mass_factor = why::many;
+    result.alpha = why::many;
   }
   result.mass_scaling = mass_scaling(limit);
   result.substeps = substeps(limit.own);
@@ -178,14 +181,14 @@ Found<double> ForStep::stiffness_factor(const Limit& limit) const {
   const auto found = nearest_to_one([&](double s) { return limit.slack(StructureChange{.stiffness = s}); },
                                     0.25, limit.tolerance);
   if (found) return *found;
-  return limit.own.status == LimitStatus::none ? none_stable : damping_limits;
+  return limit.own.status == LimitStatus::none ? why::none_stable : why::damping_limits;
 }
 
 Found<double> ForStep::mass_factor(const Limit& limit) const {
   const auto found =
       nearest_to_one([&](double m) { return limit.slack(StructureChange{.mass = m}); }, 4, limit.tolerance);
   if (found) return *found;
-  return limit.own.status == LimitStatus::none ? none_stable : damping_limits;
+  return limit.own.status == LimitStatus::none ? why::none_stable : why::damping_limits;
 }
 
 // Of a half-plane: more alpha moves every mode along x, so with x >= 0 an interval from 0, else one to ∞.
@@ -193,7 +196,7 @@ Found<AlphaRange> ForStep::alpha_of_condition(const Limit& limit, const HalfPlan
   const auto slack = [&](double alpha) { return limit.slack(StructureChange{.alpha = alpha}); };
   const double top = limit.k_max() * step_, unit = condition.bound / (std::abs(condition.x) * top);
   if (condition.x >= 0) {
-    if (slack(0) < 0) return no_alpha;
+    if (slack(0) < 0) return why::no_alpha;
     if (condition.x == 0) return AlphaRange{0, infinity};
     double good = 0, bad = 2 * unit;
     for (double next = unit; good == 0; bad = next, next /= 4)
@@ -206,12 +209,12 @@ Found<AlphaRange> ForStep::alpha_of_condition(const Limit& limit, const HalfPlan
   if (slack(0) >= 0) return AlphaRange{0, infinity};
   double bad = 1e-6 * unit, good = bad;
   while (slack(good) < 0)
-    if (bad = good, good *= 4; good > 1e12 * unit) return no_alpha;
+    if (bad = good, good *= 4; good > 1e12 * unit) return why::no_alpha;
   return AlphaRange{border(slack, good, bad, limit.tolerance), infinity};
 }
 
-// 0, the alpha that is designed for the step, and a grid up to where the stiffest mode, overdamped, leaves
-// the real interval R: X = R + Y/R.
+// 0, the alpha that is designed for the step, and a grid up to where the stiffest mode, overdamped,
+// leaves the real interval R: X = R + Y/R.
 std::vector<double> ForStep::alphas(const StabilityRegion& region, double k) const {
   constexpr int samples = 40;
   const double unit = 1 / (step_ * k), y = step_ * step_ * k, r = region.constants().real_interval;
@@ -224,9 +227,9 @@ std::vector<double> ForStep::alphas(const StabilityRegion& region, double k) con
 // The interval around the alpha that leaves most room.
 Found<AlphaRange> ForStep::alpha(const Limit& limit) const {
   const DampingModel& damping = answer_.structure().damping;
-  if (damping.kind == DampingModel::Kind::designed) return designed;
-  if (limit.takes_part) return split;
-  if (!(limit.k_max() > 0)) return no_alpha;
+  if (damping.kind == DampingModel::Kind::designed) return why::designed;
+  if (limit.takes_part) return why::split;
+  if (!(limit.k_max() > 0)) return why::no_alpha;
   if (limit.condition) return alpha_of_condition(limit, *limit.condition);
   const auto slack = [&](double alpha) { return limit.slack(StructureChange{.alpha = alpha}); };
   std::vector<double> room, grid = alphas(limit.region(), limit.k_max());
@@ -234,7 +237,7 @@ Found<AlphaRange> ForStep::alpha(const Limit& limit) const {
   std::ranges::sort(grid);
   for (const double alpha : grid) room.push_back(slack(alpha));
   const auto best = std::ranges::max_element(room) - room.begin();
-  if (!(room[best] >= 0)) return no_alpha;
+  if (!(room[best] >= 0)) return why::no_alpha;
   auto low = best, high = best;
   while (low > 0 && room[low - 1] >= 0) --low;
   while (high + 1 < std::ssize(grid) && room[high + 1] >= 0) ++high;
@@ -252,29 +255,29 @@ Found<AlphaRange> ForStep::alpha(const Limit& limit) const {
 Found<MassScaling> ForStep::mass_scaling(const Limit& limit) const {
   const StructuralMatrices& s = answer_.structure().matrices;
   const DampingModel& damping = answer_.structure().damping;
-  if (!s.symmetric) return not_symmetric;
-  if (!limit.definite) return indefinite;
-  if (limit.takes_part) return split;
+  if (!s.symmetric) return why::not_symmetric;
+  if (!limit.definite) return why::indefinite;
+  if (limit.takes_part) return why::split;
   if (limit.modal) {
     const double top = limit.k_max();
     const auto slack = [&](double factor) {
       return limit.slack(limit.modal_limit(0, factor * top, 0, damping.alpha));
     };
     const auto factor = nearest_to_one(slack, 0.25, limit.tolerance);
-    if (!factor) return limit.own.status == LimitStatus::none ? none_stable : damping_limits;
+    if (!factor) return limit.own.status == LimitStatus::none ? why::none_stable : why::damping_limits;
     return scale_masses(s.mass, s.stiffness, *factor * top, width_);
   }
-  if (!limit.condition) return no_condition;
+  if (!limit.condition) return why::no_condition;
   const auto& [x, y, bound] = *limit.condition;
   const double c = bound - x * step_ * damping.d0;
-  if (!(c > 0)) return damping_limits;
+  if (!(c > 0)) return why::damping_limits;
   const SparseMatrix dampers = s.damping - damping.d0 * s.mass;
   return scale_masses(s.mass, (x * step_) * dampers + (y * step_ * step_) * s.stiffness, c, width_);
 }
 
 Found<long> ForStep::substeps(const MethodLimits& limits) const {
-  if (!limits.h_certified) return limits.status == LimitStatus::none ? none_stable : not_proved;
-  if (step_ / *limits.h_certified > 1e15) return too_many;
+  if (!limits.h_certified) return limits.status == LimitStatus::none ? why::none_stable : why::not_proved;
+  if (step_ / *limits.h_certified > 1e15) return why::too_many;
   return substeps_of_frame(1 / step_, *limits.h_certified).number;
 }
 

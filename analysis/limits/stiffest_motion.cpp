@@ -31,7 +31,7 @@ std::optional<Eigen::VectorXd> stiffest_mode_shape(const StructuralMatrices& s,
 }
 
 // Keeps the ten largest shares, of equal ones the first.
-void keep(Carrier carrier, std::vector<Carrier>& carriers) {
+void keep_largest(Carrier carrier, std::vector<Carrier>& carriers) {
   if (carriers.size() == most_carriers && !(carrier.share > carriers.back().share)) return;
   const auto place = std::ranges::upper_bound(carriers, carrier.share, std::greater<>(), &Carrier::share);
   carriers.insert(place, std::move(carrier));
@@ -70,25 +70,25 @@ void add_elements(const StructuralMatrices& s, const ElementsOf& elements, doubl
     for (Eigen::Index c = 0; c < part.corners(); ++c) weights[part.place[c]] += part.weight(c);
   });
   double bound = 0;
-  elements.visit_all(
-      [&](std::string_view kind, long index, std::span<const int> particles, const Eigen::MatrixXd& k) {
-        const FreePart part(elements.place, particles, k);
-        if (part.corners() == 0) return;
-        Eigen::VectorXd u(3 * part.corners()), root(3 * part.corners());
-        double weighs = 0;
-        for (Eigen::Index c = 0; c < part.corners(); ++c) {
-          const Eigen::Index p = 3 * static_cast<Eigen::Index>(part.place[c]);
-          const double own = part.weight(c) / weights[part.place[c]];
-          u.segment<3>(3 * c) = motion.mode.segment<3>(p);
-          root.segment<3>(3 * c).setConstant(own > 0 ? 1 / std::sqrt(own * mass[p]) : 0);
-          weighs += mass[p];
-        }
-        bound = std::max(bound, largest_eigenvalue(root.asDiagonal() * part.stiffness * root.asDiagonal()));
-        const double share = u.dot(part.stiffness * u) / k0;
-        if (motion.carriers.size() < most_carriers || share > motion.carriers.back().share)
-          keep({kind, index, {particles.begin(), particles.end()}, share, largest_eigenvalue(k), weighs},
-               motion.carriers);
-      });
+  elements.visit_all([&](std::string_view kind, long index, std::span<const int> particles,
+                         const Eigen::MatrixXd& k) {
+    const FreePart part(elements.place, particles, k);
+    if (part.corners() == 0) return;
+    Eigen::VectorXd u(3 * part.corners()), root(3 * part.corners());
+    double weighs = 0;
+    for (Eigen::Index c = 0; c < part.corners(); ++c) {
+      const Eigen::Index p = 3 * static_cast<Eigen::Index>(part.place[c]);
+      const double own = part.weight(c) / weights[part.place[c]];
+      u.segment<3>(3 * c) = motion.mode.segment<3>(p);
+      root.segment<3>(3 * c).setConstant(own > 0 ? 1 / std::sqrt(own * mass[p]) : 0);
+      weighs += mass[p];
+    }
+    bound = std::max(bound, largest_eigenvalue(root.asDiagonal() * part.stiffness * root.asDiagonal()));
+    const double share = u.dot(part.stiffness * u) / k0;
+    if (motion.carriers.size() < most_carriers || share > motion.carriers.back().share)
+      keep_largest({kind, index, {particles.begin(), particles.end()}, share, largest_eigenvalue(k), weighs},
+                   motion.carriers);
+  });
   motion.element = bound;
 }
 
@@ -111,13 +111,13 @@ std::optional<StiffestMotion> stiffest_motion(const StructuralMatrices& s,
     add_elements(s, *elements, k0, motion);
   } else {
     for (Eigen::Index i = 0; i < s.size(); ++i)
-      keep({"unknown",
-            static_cast<long>(i),
-            {static_cast<int>(i)},
-            motion.mode[i] * force[i] / k0,
-            stiffness[i],
-            mass[i]},
-           motion.carriers);
+      keep_largest({"unknown",
+                    static_cast<long>(i),
+                    {static_cast<int>(i)},
+                    motion.mode[i] * force[i] / k0,
+                    stiffness[i],
+                    mass[i]},
+                   motion.carriers);
   }
   return motion;
 }

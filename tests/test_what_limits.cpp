@@ -25,7 +25,7 @@ namespace {
 
 const std::vector<int> two_held{0, 3};
 
-/// A cloth away from its rest, two particles two_held, and its elements there.
+/// A cloth away from its rest, two particles pinned, and its elements there.
 template <class Cloth>
 struct Displaced {
   explicit Displaced(Cloth of)

@@ -11,10 +11,12 @@
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
 #include "experiments/contact_report.h"
+#include "experiments/for_step_report.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
 #include "experiments/limits_options.h"
 #include "experiments/limits_words.h"
+#include "experiments/stiffest_report.h"
 #include "solvers/cpu_time.h"
 #include "solvers/io/input_error.h"
 #include "solvers/team.h"
@@ -191,6 +193,7 @@ void check(const CommonOptions& common, const LimitsOptions& options) {
   if (!options.method.empty() && !options.methods.empty())
     throw InputError("--method, --methods", 0, "are both given, expected one of them");
   check_cheapest(options);
+  check_for_step(common, options);
 }
 
 Json report(StructureLimits& answer, const std::vector<Row>& rows, double safety, const Subject& subject) {
@@ -298,6 +301,9 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
     waiting->now("the cheapest method");
     cheapest.emplace(answer, subject, start, methods, asked);
   }
+  const ForStepReport wanted(options, answer, methods, subject, *waiting);
+  waiting->now("the stiffest mode");
+  const StiffestReport stiffest(options, common, answer, subject, start);
   waiting.reset();
   if (common.json) {
     Json json = report(answer, rows, options.safety, subject);
@@ -307,11 +313,17 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
         add_steps(json["methods"][i], *cheapest, methods[i], rows[i].limits, asked);
       json["cheapest"] = cheapest_json(*cheapest, asked);
     }
+    wanted.add_to(json);
+    stiffest.add_to(json);
     print_json(json);
   } else {
     print(answer, rows, options.safety, size_text(subject));
     if (contact) std::cout << contact->text_of();
-    if (answer.k0().converged) print_cheapest(*cheapest, answer, methods, asked);
+    if (answer.k0().converged) {
+      print_cheapest(*cheapest, answer, methods, asked);
+      wanted.print();
+      stiffest.print();
+    }
   }
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))

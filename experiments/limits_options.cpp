@@ -45,10 +45,24 @@ Subcommand limits_command() {
           "given.\n" +
           std::string(leapfrog_words) +
           "\n"
+          "--for-step H, or --frame-rate with --substeps: where a method does not hold, what alone would "
+          "make "
+          "it hold (d0, alpha\n"
+          "and dampers kept): the largest factor on the stiffness, alphas from to [s], the least factor on "
+          "all "
+          "masses, the least\n"
+          "mass added to single particles [kg], the fewest substeps. JSON has it in for_step, by method; "
+          "indices count from 0.\n"
+          "JSON: stiffest are the ten elements (of matrices unknowns) with most of the stiffest mode's "
+          "energy; "
+          "cheap_bounds are\n"
+          "two bounds on k0 without an eigenvalue of the whole, and which part of the step they leave "
+          "unused.\n"
           "Exit status 3: the --method asked for has no stable step.\n\n"
           "examples: springstab limits --grid 32x32 --pin first-row\n"
           "          springstab limits skirt.obj --method symplectic-euler --json\n"
-          "          springstab limits --stiffness K.mtx --mass M.mtx",
+          "          springstab limits --stiffness K.mtx --mass M.mtx\n"
+          "          springstab limits --grid 32x32 --frame-rate 60 --substeps 10",
       .options = with_input(
           o->input,
           {Option("--method", &o->method, "only this one of " + method_names() + "; NAME:key=value,...")
@@ -68,7 +82,15 @@ Subcommand limits_command() {
            Option("--error", &o->error, "that the cheapest method is to reach, relative to what moves: 0.01")
                .shown_as("E"),
            Option("--frame-rate", &o->frame_rate, "also say how many steps make a frame of 1/FPS seconds")
-               .shown_as("FPS")}),
+               .shown_as("FPS"),
+           Option("--substeps", &o->substeps, "of such a frame: says of that step what --for-step says")
+               .shown_as("N"),
+           Option("--for-step", &o->for_step,
+                  "whether each method holds at this step, and what would make it hold")
+               .shown_as("[s]"),
+           Option("--explain", &o->explain, "what decides the step: where the stiffest mode's energy is"),
+           Option("--mode", &o->mode, "writes the stiffest mode, vertex by vertex, as CSV")
+               .shown_as("FILE")}),
       .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};
 }
 

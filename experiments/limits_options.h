@@ -20,6 +20,10 @@ struct LimitsOptions {
   int digits = 0;                      // of h; 0: all, or 4 of many unknowns
   std::optional<double> error{};       // that the cheapest method is to reach
   std::optional<double> frame_rate{};  // [1/s]
+  std::optional<double> for_step{};    // at which methods are to hold [s]
+  int substeps = 0;                    // of a frame; 0: not given
+  bool explain = false;                // what decides the step
+  std::string mode;                    // file for the stiffest mode
 };
 
 /// Stable steps and damping of a structure; returns an ExitStatus.

@@ -97,8 +97,9 @@ MethodLimits GeneralDamping::compute(const Method& method) {
 }
 
 std::vector<Stiffening> GeneralDamping::stiffenings() const {
-  std::vector<Stiffening> all{{}, {safety_, 0}};
-  if (damping_.alpha > 0) all.push_back({safety_, (safety_ - 1) * damping_.alpha});
+  std::vector<Stiffening> all{{}};
+  if (safety_ > 1) all.push_back({safety_, 0});
+  if (safety_ > 1 && damping_.alpha > 0) all.push_back({safety_, (safety_ - 1) * damping_.alpha});
   return all;
 }
 

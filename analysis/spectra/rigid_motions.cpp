@@ -109,12 +109,12 @@ class Pivots {
   std::vector<bool> moves_;
 };
 
-// Whether many unknowns that resist have pivots above their noise, all of them, which a factorization by
+// Whether many unknowns that resist have pivots above their rounding, all of them, which a factorization by
 // blocks finds out sooner: A - diag(r) ≻ 0 makes each pivot xᵀAx > Σ r_i x_i².
-bool is_above(SparseMatrix a, const Eigen::VectorXd& noise, const std::vector<int>& place) {
+bool is_above(SparseMatrix a, const Eigen::VectorXd& least_pivot, const std::vector<int>& place) {
   if (a.rows() < SparseCholesky::blocked_from) return false;
-  for (Eigen::Index i = 0; i < noise.size(); ++i)
-    if (place[i] >= 0) a.coeffRef(place[i], place[i]) -= noise[i];
+  for (Eigen::Index i = 0; i < least_pivot.size(); ++i)
+    if (place[i] >= 0) a.coeffRef(place[i], place[i]) -= least_pivot[i];
   return SparseCholesky().factorize(a);
 }
 
@@ -124,7 +124,7 @@ StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
   const Eigen::VectorXd mass = s.mass.diagonal();
   SparseMatrix sum = normalized(s.stiffness, mass);
   if (s.has_damping()) sum = SparseMatrix(sum + normalized(s.damping, mass));
-  const Eigen::VectorXd noise = rounding * sum.diagonal() + global_rounding * mass;
+  const Eigen::VectorXd least_pivot = rounding * sum.diagonal() + global_rounding * mass;
   std::vector<int> place;
   int size = 0;
   const auto keep = [&](const auto& moves) {
@@ -135,9 +135,9 @@ StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
   };
   // A pivot is at most the diagonal's entry: what is rounding there, as sideways in a flat net, is held.
   const Eigen::VectorXd diagonal = sum.diagonal();
-  keep([&](Eigen::Index i) { return diagonal[i] > noise[i]; });
-  if (!is_above(rows_and_columns(sum, place, size), noise, place)) {
-    const std::vector<bool> moving = Pivots(sum, noise).moving();
+  keep([&](Eigen::Index i) { return diagonal[i] > least_pivot[i]; });
+  if (!is_above(rows_and_columns(sum, place, size), least_pivot, place)) {
+    const std::vector<bool> moving = Pivots(sum, least_pivot).moving();
     keep([&](Eigen::Index i) { return moving[i]; });
   }
 

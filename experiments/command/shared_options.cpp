@@ -90,6 +90,15 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
           .shown_as("S"),
       Option("--material", &input.material, "default, soft, stiff (springs), and for surfaces baraff-witkin")
           .shown_as("NAME"),
+      Option("--area-density", &input.numbers.area_density, "of a surface, instead of its material's")
+          .shown_as("[kg/m²]"),
+      Option("--mass-total", &input.numbers.mass_total, "to which all masses are scaled").shown_as("[kg]"),
+      Option("--stretch", &input.numbers.stretch,
+             "stiffness of a surface along edges, of triangles along u and v")
+          .shown_as("[N/m]"),
+      Option("--bend", &input.numbers.bend,
+             "stiffness against bending, of springs in N/m, of triangles in N·m")
+          .shown_as("[N/m]"),
       Option("--pin", &input.pin, "none, first-row, corners or particle numbers like 0,5-9").shown_as("SPEC"),
       Option("--stiffness", &input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
           .shown_as("FILE"),

@@ -65,7 +65,8 @@ struct SceneDescription {
   Eigen::Vector3d gravity{0, -9.81, 0};  // [m/s²]
   RayleighDescription damping;
   InitialDescription initial;
-  double scale = 1;  // of the geometry: what its numbers are [m]
+  double scale = 1;                    // of the geometry: what its numbers are [m]
+  std::optional<double> total_mass{};  // to which all masses are scaled [kg]
   std::optional<ContactDescription> contact{};
 };
 

@@ -32,6 +32,11 @@ SceneDescription describe(const InputOptions& options) {
     if (options.spacing || !options.material.empty() || !options.pin.empty() || !options.diagonals.empty())
       throw InputError(options.file, 0,
                        "--spacing, --diagonals, --material and --pin stand in the scene file itself");
+    if (options.numbers.any())
+      throw InputError(
+          options.file, 0,
+          "--area-density, --stretch, --bend and --mass-total are for grids and meshes, the scene "
+          "file has its material itself");
     SceneDescription description = read_scene_file(options.file);
     if (options.scale && description.scale != 1)
       throw InputError(options.file, 0,
@@ -54,6 +59,7 @@ SceneDescription describe(const InputOptions& options) {
   }
   description.material = named_material(options.material.empty() ? "default" : options.material,
                                         is_solid(description.geometry), "--material", 0);
+  apply(options.numbers, description);
   if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
   return description;
 }
@@ -143,6 +149,12 @@ void scale_by(double scale, std::vector<Eigen::Vector3d>& vertices) {
   for (Eigen::Vector3d& vertex : vertices) vertex *= scale;
 }
 
+// Scales the masses so that their sum is `total`.
+void weigh(double total, std::vector<double>& masses) {
+  const double sum = std::accumulate(masses.begin(), masses.end(), 0.0);
+  for (double& mass : masses) mass *= total / sum;
+}
+
 // At rest but for `stretch` and `velocity`.
 State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
   State<Vector> state = scene.rest_state();
@@ -180,12 +192,20 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
       !options.diagonals.empty())
     throw InputError(options.stiffness, 0,
                      "--spacing, --diagonals, --scale, --material and --pin are for grids and meshes");
+  if (options.numbers.any())
+    throw InputError(options.stiffness, 0,
+                     "--area-density, --stretch, --bend and --mass-total are for grids and meshes");
   const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
   const auto read = [&](const std::string& path) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
   };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix),
                      implicit = read(options.implicit_damping_matrix);
+  const Eigen::VectorXd weight = m.size() > 0
+                                     ? Eigen::VectorXd(m.cwiseAbs() * Eigen::VectorXd::Ones(m.cols()))
+                                     : Eigen::VectorXd::Ones(k.rows());
+  for (long i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0) kept_.push_back(i);
   const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix, &options.implicit_damping_matrix})
@@ -234,11 +254,15 @@ void Subject::build_scene(const SceneDescription& description) {
 }
 
 template <class Cloth>
-void Subject::place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
+void Subject::place(Cloth cloth, const SceneDescription& description, std::vector<int> pinned,
                     const std::string& source) {
+  if (description.total_mass) weigh(*description.total_mass, cloth.mass);
   pinned_ = std::move(pinned);
   stretch_ = description.initial.stretch;
   size_ = size_of(cloth);
+  visit_elements_ = [cloth](const auto& at, const ElementVisitor& visit) {
+    visit_elements(cloth, at, visit);
+  };
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
   if constexpr (std::is_same_v<Cloth, TriangleCloth>)
     if (mesh_file_) {
@@ -300,6 +324,37 @@ std::unique_ptr<ContactFilter> Subject::contact_filter() const {
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
   std::vector<Eigen::Vector3d> particles = scene()->positions(x);
   return mesh_file_ ? file_vertices(*mesh_file_, particles, stretch_) : particles;
+}
+
+std::vector<long> Subject::vertex_numbers() const {
+  std::vector<long> first(static_cast<std::size_t>(scene()->particles()));
+  std::iota(first.begin(), first.end(), 0);
+  if (!mesh_file_) return first;
+  const std::vector<int>& particle = mesh_file_->repair.vertex;
+  for (long v = std::ssize(particle) - 1; v >= 0; --v)
+    if (particle[static_cast<std::size_t>(v)] >= 0)
+      first[static_cast<std::size_t>(particle[static_cast<std::size_t>(v)])] = v;
+  return first;
+}
+
+std::vector<long> Subject::particle_numbers() const {
+  if (!scene()) return kept_;
+  std::vector<long> numbers;
+  const std::vector<long> all = vertex_numbers();
+  for (int i = 0; i < std::ssize(all); ++i)
+    if (!std::ranges::binary_search(pinned_, i)) numbers.push_back(all[static_cast<std::size_t>(i)]);
+  return numbers;
+}
+
+std::optional<ElementsOf> Subject::elements(const Vector& x) const {
+  if (!scene()) return std::nullopt;
+  ElementsOf elements{
+      [this, at = scene()->positions(x)](const ElementVisitor& visit) { visit_elements_(at, visit); },
+      std::vector<int>(static_cast<std::size_t>(scene()->particles()))};
+  int free = 0;
+  for (int i = 0; i < scene()->particles(); ++i)
+    elements.place[static_cast<std::size_t>(i)] = std::ranges::binary_search(pinned_, i) ? -1 : free++;
+  return elements;
 }
 
 std::optional<StructuralMatrices> Subject::every_pose() const {

@@ -2,12 +2,15 @@
 // grid) or a system of matrices.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/limits/penalty_contact.h"
+#include "analysis/limits/stiffest_motion.h"
 #include "analysis/model.h"
+#include "experiments/inputs/material_options.h"
 #include "experiments/inputs/mesh_input.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/contact/contact_filter.h"
@@ -22,6 +25,7 @@ struct InputOptions {
   std::string material, pin;      // with grid or a mesh
   std::optional<double> scale;    // of a scene's geometry
   std::string diagonals;          // with grid
+  MaterialOptions numbers{};      // with grid or a mesh
   std::string stiffness, mass, damping_matrix, implicit_damping_matrix;
   bool sum_duplicates = false;  // of these matrices' entries
   std::string rayleigh;         // "d0,alpha": damping of matrices beside D
@@ -70,13 +74,24 @@ class Subject : public Model {
   /// Whether a grid's diagonals alternate and nothing is made of triangles.
   bool has_unused_diagonals() const { return unused_diagonals_; }
 
+  /// How many unknowns move together: 3 of a particle, 1 of matrices.
+  int unknowns_a_particle() const { return scene() ? 3 : 1; }
+  /// Of each free particle, or unknown of matrices that was not condensed, its number in the input, from 0:
+  /// of a mesh file the first vertex that lies there.
+  std::vector<long> particle_numbers() const;
+  /// The same of all particles of a scene, pinned ones too.
+  std::vector<long> vertex_numbers() const;
+
+  /// Of a scene whose unknowns are x; nothing for matrices. Refers to this object.
+  std::optional<ElementsOf> elements(const Vector& x) const;
+
   /// Of a scene of springs alone: matrices that no pose and no contact exceeds (solvers/scene/every_pose.h).
   std::optional<StructuralMatrices> every_pose() const;
 
  private:
   void build_scene(const SceneDescription& description);
   template <class Cloth>
-  void place(const Cloth& cloth, const SceneDescription& description, std::vector<int> pinned,
+  void place(Cloth cloth, const SceneDescription& description, std::vector<int> pinned,
              const std::string& source);
   template <class Cloth>
   void add_contact(const ContactDescription& description, const Cloth& cloth, Scene& scene);
@@ -88,6 +103,8 @@ class Subject : public Model {
   std::optional<MeshFile> mesh_file_;
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
+  std::vector<long> kept_;  // of matrices
+  std::function<void(const std::vector<Eigen::Vector3d>& at, const ElementVisitor& visit)> visit_elements_;
   std::optional<SceneSize> size_;
   bool unused_diagonals_ = false;
   std::optional<Material> material_;

@@ -56,6 +56,11 @@ Json contents_of(const InputOptions& input, bool resume) {
     contents["implicit-damping-matrix"] = contents_of(input.implicit_damping_matrix, resume);
   if (!input.diagonals.empty()) contents["diagonals"] = input.diagonals;
   if (input.scale) contents["scale"] = number(input.scale);
+  const MaterialOptions& numbers = input.numbers;
+  if (numbers.area_density) contents["area-density"] = *numbers.area_density;
+  if (numbers.mass_total) contents["mass-total"] = *numbers.mass_total;
+  if (numbers.stretch) contents["stretch"] = *numbers.stretch;
+  if (numbers.bend) contents["bend"] = *numbers.bend;
   if (!input.rayleigh.empty()) contents["rayleigh"] = input.rayleigh;
   if (input.sum_duplicates) contents["sum-duplicates"] = true;
   return contents;

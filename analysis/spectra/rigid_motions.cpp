@@ -111,10 +111,10 @@ class Pivots {
 
 // Whether many unknowns that resist have pivots above their noise, all of them, which a factorization by
 // blocks finds out sooner: A - diag(r) ≻ 0 makes each pivot xᵀAx > Σ r_i x_i².
-bool is_above(SparseMatrix a, const Eigen::VectorXd& noise, const std::vector<int>& place) {
+bool is_above(SparseMatrix a, const Eigen::VectorXd& own_noise, const std::vector<int>& place) {
   if (a.rows() < SparseCholesky::blocked_from) return false;
-  for (Eigen::Index i = 0; i < noise.size(); ++i)
-    if (place[i] >= 0) a.coeffRef(place[i], place[i]) -= noise[i];
+  for (Eigen::Index i = 0; i < own_noise.size(); ++i)
+    if (place[i] >= 0) a.coeffRef(place[i], place[i]) -= own_noise[i];
   return SparseCholesky().factorize(a);
 }
 
@@ -124,7 +124,7 @@ StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
   const Eigen::VectorXd mass = s.mass.diagonal();
   SparseMatrix sum = normalized(s.stiffness, mass);
   if (s.has_damping()) sum = SparseMatrix(sum + normalized(s.damping, mass));
-  const Eigen::VectorXd noise = rounding * sum.diagonal() + global_rounding * mass;
+  const Eigen::VectorXd own_noise = rounding * sum.diagonal() + global_rounding * mass;
   std::vector<int> place;
   int size = 0;
   const auto keep = [&](const auto& moves) {
@@ -134,8 +134,8 @@ StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
       if (moves(i)) place[i] = size++;
   };
   keep([&](Eigen::Index i) { return sum.diagonal()[i] > 0; });
-  if (!is_above(rows_and_columns(sum, place, size), noise, place)) {
-    const std::vector<bool> moving = Pivots(sum, noise).moving();
+  if (!is_above(rows_and_columns(sum, place, size), own_noise, place)) {
+    const std::vector<bool> moving = Pivots(sum, own_noise).moving();
     keep([&](Eigen::Index i) { return moving[i]; });
   }
 

@@ -43,23 +43,26 @@ void name_vertices(Diagnosis& found, int components) {
   found.vertices = std::move(order);
 }
 
-// The structure in the pose from which the pattern is.
+// The structure in the poses between which the pattern was seen to grow: the one that explains it better.
 diagnosis::PatternInStructure in_structure(const Diagnosis& found, const RunFrames& frames, Model& model,
                                            const Subject* scene, const std::string& source,
                                            const std::vector<Method>& methods) {
   const std::vector<Eigen::Index> places = unknowns_in_frame(model, scene, frames.positions.rows(), source);
+  const diagnosis::Growth& growth = *found.growth;
   State<Vector> state = model.initial_state();
-  Eigen::VectorXcd pattern(state.x.size());
-  for (Eigen::Index i = 0; i < state.x.size(); ++i) {
-    pattern[i] = found.growth->pattern[places[i]];
-    if (scene) state.x[i] = frames.positions(places[i], found.growth->fitted);
-  }
-  state.v.setZero();
   StructureLimits answer(model.structure(state), {.certify = false});
-  if (!answer.k0().converged)
-    throw std::runtime_error("the stiffness k0 in the frames' pose did not converge");
-  return diagnosis::explain_growth(answer, pattern, {found.growth->factor, found.run.h, found.run.every},
-                                   methods);
+  Eigen::VectorXcd pattern(state.x.size());
+  for (Eigen::Index i = 0; i < pattern.size(); ++i) pattern[i] = growth.pattern[places[i]];
+  state.v.setZero();
+  const auto seen_in = [&](Eigen::Index frame) {
+    for (Eigen::Index i = 0; i < pattern.size(); ++i) state.x[i] = frames.positions(places[i], frame);
+    return diagnosis::explain_growth(model.structure(state), answer, pattern,
+                                     {growth.factor, found.run.h, found.run.every}, methods);
+  };
+  diagnosis::PatternInStructure first = seen_in(growth.first);
+  if (model.is_linear()) return first;
+  diagnosis::PatternInStructure last = seen_in(growth.last);
+  return last.methods[0].off < first.methods[0].off ? last : first;
 }
 
 Json complex_json(Complex value) { return {number(value.real()), number(value.imag())}; }

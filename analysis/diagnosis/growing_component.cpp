@@ -111,12 +111,10 @@ std::optional<GrowingComponent> growing_component(const Frames& frames, const Gr
   }
   if (growing < 0) return std::nullopt;
   GrowingComponent found;
-  const Eigen::VectorXcd mode = basis * right.col(growing),
-                         functional = basis * left.row(growing).transpose();
-  found.pattern = pairs->first * mode;
-  const double norm = found.pattern.norm();
-  if (!(norm > 0)) return std::nullopt;
-  found.pattern /= norm;
+  const Eigen::VectorXcd functional = basis * left.row(growing).transpose();
+  found.pattern = pairs->first * (basis * right.col(growing));
+  if (!(found.pattern.norm() > 0)) return std::nullopt;
+  found.pattern.normalize();
   found.now = pairs->first * functional;
   found.late = pairs->second * functional;
   found.share = share;

@@ -24,6 +24,12 @@ constexpr double rises = 1.5;     // e-foldings from a window's first to its las
 constexpr double dominant = 0.5;  // share of what grows, at a window's end
 constexpr double coherent = 0.5, coherent_of_smooth = 0.25;  // of the amplitude, from its law
 constexpr int most_rounds = 4;
+constexpr double most_residual = 0.2;
+// For a better window after the first with growth: lengths of that, and e-foldings short of the law's end,
+// each of as many, since there it ends by what is no more linear.
+constexpr Index searched = 4;
+constexpr double at_most_back = 0.15;
+constexpr double like_it = 0.3;                                           // |log| of its factor beside that
 constexpr double enough = 5, enough_of_slow = 6, enough_of_one_sign = 8;  // e-foldings
 constexpr Index fewest = 5;                                               // differences that follow the law
 // Radians: in all, and beside -1 a frame, below which a factor is real. (Of modes that grow nearly alike, one
@@ -132,27 +138,63 @@ Eigen::VectorXcd amplitudes(const Frames& frames, const GrowthWindow& window, co
   return b;
 }
 
-std::optional<Growth> growth_in(const Frames& frames, const GrowthWindow& window) {
+// The law of the window alone, and what it is the law of.
+struct Local {
+  GrowingComponent part;
+  FollowedLaw laws;
+};
+
+std::optional<Local> local_growth(const Frames& frames, const GrowthWindow& window) {
   std::optional<GrowingComponent> part = growing_component(frames, window);
   if (!part || part->share < dominant) return std::nullopt;
-  const Index inside = window.end - window.begin - window.lag;
-  if (!followed_law(amplitudes(frames, window, *part, window.begin, window.begin + inside), 0, inside))
-    return std::nullopt;
-  const Index all = frames.cols() - window.order - window.lag;
-  const Eigen::VectorXcd b = amplitudes(frames, window, *part, 0, all);
-  const auto laws = followed_law(b, window.begin, window.begin + inside);
-  if (!laws || !is_significant(laws->far, b)) return std::nullopt;
-  const Law& law = laws->far;
-  Growth found{laws->near.factor, std::move(part->pattern), law.first,     law.last + window.order,
-               window.begin,      law.e_foldings(),         part->residual};
+  const Index count = window.end - window.begin - window.lag;
+  const Eigen::VectorXcd b = amplitudes(frames, window, *part, window.begin, window.begin + count);
+  const auto laws = followed_law(b, 0, count);
+  if (!laws || !(std::abs(laws->near.factor) > 1)) return std::nullopt;
+  return Local{std::move(*part), *laws};
+}
+
+bool differ(Complex factor, Complex other) {
+  const double turn = std::abs(std::abs(std::arg(factor)) - std::abs(std::arg(other)));
+  return std::hypot(std::log(std::abs(factor / other)), turn) > like_it;
+}
+
+bool is_real(const Law& law) {
   const double angle = std::abs(std::arg(law.factor)), short_of_pi = std::numbers::pi - angle;
-  if (std::min(angle, short_of_pi) * law.steps() < turned || short_of_pi < turned_beside_alternating)
-    found.factor = std::copysign(std::abs(found.factor), found.factor.real());
-  if (found.factor.imag() < 0) {
-    found.factor = std::conj(found.factor);
-    found.pattern = found.pattern.conjugate().eval();
+  return std::min(angle, short_of_pi) * law.steps() < turned || short_of_pi < turned_beside_alternating;
+}
+
+// What a window says of the growth that was found.
+void take(const GrowthWindow& window, Local local, bool real, Growth& growth) {
+  const Law& law = local.laws.near;
+  growth.factor = real ? std::copysign(std::abs(law.factor), law.factor.real()) : law.factor;
+  growth.pattern = std::move(local.part.pattern);
+  if (growth.factor.imag() < 0) {
+    growth.factor = std::conj(growth.factor);
+    growth.pattern = growth.pattern.conjugate().eval();
   }
-  return found;
+  growth.first = window.begin;
+  growth.last = window.begin + law.last + window.lag + window.order;
+  growth.residual = local.part.residual;
+}
+
+// The law as far as it is followed, where that is far enough: first beside the window, then in all frames.
+std::optional<Law> significant_law(const Frames& frames, const GrowthWindow& window, const Local& local) {
+  if (local.part.residual > most_residual) return std::nullopt;
+  const Index all = frames.cols() - window.order - window.lag, length = window.end - window.begin;
+  for (const Index margin : {2 * length, all}) {
+    const Index begin = std::max<Index>(0, window.begin - margin), end = std::min(all, window.end + margin);
+    const Eigen::VectorXcd b = amplitudes(frames, window, local.part, begin, end);
+    const auto laws = followed_law(b, window.begin - begin, window.end - window.lag - begin);
+    if (!laws) return std::nullopt;
+    Law law = laws->far;
+    const bool goes_on = (law.first == 0 && begin > 0) || (law.last + 1 == b.size() && end < all);
+    if (goes_on) continue;
+    if (!is_significant(law, b)) return std::nullopt;
+    law.first += begin, law.last += begin;
+    return law;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -167,16 +209,31 @@ std::optional<Growth> find_growth(const Frames& frames) {
   std::vector<GrowthWindow> windows;
   for (const int order : orders) add_windows(frames, order, windows);
   std::ranges::stable_sort(windows, {}, [](const GrowthWindow& w) { return w.end + w.order; });
-  std::optional<Growth> best;
+  std::optional<Growth> found;
+  bool real = false;
   Index search_to = 0;
   for (const GrowthWindow& window : windows) {
-    if (best && window.end > search_to) break;
-    std::optional<Growth> found = growth_in(frames, window);
-    if (!found) continue;
-    if (!best) search_to = window.end + (window.end - window.begin);
-    if (!best || found->residual < best->residual) best = std::move(found);
+    if (found && window.end > search_to) break;
+    std::optional<Local> local = local_growth(frames, window);
+    if (!local) continue;
+    if (!found) {
+      const std::optional<Law> law = significant_law(frames, window, *local);
+      if (!law) continue;
+      real = is_real(*law);
+      const double back = at_most_back * std::min(law->e_foldings(), enough + enough);
+      search_to =
+          std::max(window.end, law->last - static_cast<Index>(back / std::log(std::abs(law->factor))));
+      search_to = std::min(search_to, window.end + searched * (window.end - window.begin));
+      found.emplace();
+      found->from = law->first;
+      found->to = law->last + window.order;
+      found->e_foldings = law->e_foldings();
+    } else if (local->part.residual > found->residual || differ(local->laws.near.factor, found->factor)) {
+      continue;
+    }
+    take(window, std::move(*local), real, *found);
   }
-  return best;
+  return found;
 }
 
 }  // namespace springstab::diagnosis

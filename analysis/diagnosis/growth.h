@@ -17,7 +17,7 @@ struct Growth {
       factor;  // Λ, from one frame to the next; its imaginary part >= 0, 0 where it never turns
   Eigen::VectorXcd pattern;  // φ, of unit norm: it is in the frames as Re(c Λⁿ φ)
   Eigen::Index from, to;     // frames in which its amplitude is c Λⁿ, to 25 %
-  Eigen::Index fitted;       // the first of those that the pattern is from
+  Eigen::Index first, last;  // the first of those that the pattern is from
   double e_foldings;         // over these frames
   double residual;           // of the frames that it was fitted to, relative
 };

@@ -55,22 +55,17 @@ Complex nearest(const Method& method, const RunFactor& run, double stiffness, do
   return best;
 }
 
-struct Candidate {
-  MethodOfGrowth found;
-  double off;  // in units of what may be off
-};
-
-Candidate candidate(const Method& method, const RunFactor& run, double stiffness, double damping) {
+MethodOfGrowth candidate(const Method& method, const RunFactor& run, double stiffness, double damping) {
   const auto at = [&](double times) { return nearest(method, run, times * stiffness, damping); };
   const Complex lambda = at(1);
-  Candidate c{{method, lambda, distance(run, lambda), 1, false, {}}, infinity};
+  MethodOfGrowth found{method, lambda, distance(run, lambda), 1, infinity, false, {}};
   for (int i = -samples; i <= samples; ++i) {
     const double times = 1 + farthest * i / samples;
     const double off = std::hypot(distance(run, at(times)) / factor_off, (times - 1) / stiffness_off);
-    if (off < c.off) c.off = off, c.found.stiffness = times;
+    if (off < found.off) found.off = off, found.stiffness = times;
   }
-  c.found.fits = c.off < most_off;
-  return c;
+  found.fits = found.off < most_off;
+  return found;
 }
 
 // Eigenvectors of S whose eigenvalues are k0's, to 0.1 %, in columns.
@@ -104,30 +99,24 @@ std::optional<double> overlap(const StructuralMatrices& s, const Eigen::VectorXc
 
 }  // namespace
 
-PatternInStructure explain_growth(StructureLimits& answer, const Eigen::VectorXcd& pattern,
-                                  const RunFactor& run, const std::vector<Method>& methods) {
-  const Structure& structure = answer.structure();
-  if (pattern.size() != structure.matrices.size())
+PatternInStructure explain_growth(const Structure& pose, StructureLimits& answer,
+                                  const Eigen::VectorXcd& pattern, const RunFactor& run,
+                                  const std::vector<Method>& methods) {
+  const StructuralMatrices& s = pose.matrices;
+  if (pattern.size() != s.size())
     throw std::invalid_argument("the frames have " + std::to_string(pattern.size()) +
-                                " unknowns, expected the structure's " +
-                                std::to_string(structure.matrices.size()));
-  const double k = quotient(structure.matrices.stiffness, structure.matrices.mass, pattern);
-  PatternInStructure seen{k,
-                          damping_of_pattern(structure, pattern, k),
-                          k / answer.k0().value,
-                          overlap(structure.matrices, pattern),
-                          {}};
-  std::vector<Candidate> candidates;
-  for (const Method& method : methods) candidates.push_back(candidate(method, run, k, seen.damping));
+                                " unknowns, expected the structure's " + std::to_string(s.size()));
+  const double k = quotient(s.stiffness, s.mass, pattern);
+  const StiffestMode k0 = estimated_stiffest_mode(s);
+  if (!k0.converged) throw std::runtime_error("the stiffness k0 in the frames' pose did not converge");
+  PatternInStructure seen{k, damping_of_pattern(pose, pattern, k), k / k0.value, overlap(s, pattern), {}};
+  for (const Method& method : methods) seen.methods.push_back(candidate(method, run, k, seen.damping));
   // Methods that take the same steps stay in their order.
-  std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return std::round(1e3 * c.off); });
-  for (Candidate& c : candidates) {
-    if (c.found.fits)
-      if (const auto h_max = answer.limits(c.found.method).h_max;
-          h_max && *h_max > 0 && std::isfinite(*h_max))
-        c.found.step_over_limit = run.h / *h_max;
-    seen.methods.push_back(std::move(c.found));
-  }
+  std::ranges::stable_sort(seen.methods, {}, [](const MethodOfGrowth& m) { return std::round(1e3 * m.off); });
+  for (MethodOfGrowth& one : seen.methods)
+    if (one.fits)
+      if (const auto h_max = answer.limits(one.method).h_max; h_max && *h_max > 0 && std::isfinite(*h_max))
+        one.step_over_limit = run.h / *h_max;
   return seen;
 }
 

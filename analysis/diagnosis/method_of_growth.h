@@ -24,6 +24,7 @@ struct MethodOfGrowth {
   std::complex<double> factor;  // λ of a step, the one nearest to the run's
   double distance;              // |log(Λ/λ^every)|/every: about the relative one of a step's factor
   double stiffness;             // times k, where the method's factor is nearest to the run's
+  double off;                   // both together, in units of what they may be off
   bool fits;
   std::optional<double> step_over_limit;  // h/h_max of the structure; of methods that fit and have a limit
 };
@@ -36,8 +37,11 @@ struct PatternInStructure {
   std::vector<MethodOfGrowth> methods;  // best first
 };
 
-/// `pattern` is over the unknowns of the structure. Throws std::invalid_argument for one of another size.
-PatternInStructure explain_growth(StructureLimits& answer, const Eigen::VectorXcd& pattern,
-                                  const RunFactor& run, const std::vector<Method>& methods);
+/// `pattern` is over the unknowns of the structure in the pose in which it grows; limits are those of
+/// `answer`, at rest. Throws std::invalid_argument for a pattern of another size, std::runtime_error where k0
+/// in the pose does not converge.
+PatternInStructure explain_growth(const Structure& pose, StructureLimits& answer,
+                                  const Eigen::VectorXcd& pattern, const RunFactor& run,
+                                  const std::vector<Method>& methods);
 
 }  // namespace springstab::diagnosis

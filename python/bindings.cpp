@@ -19,9 +19,10 @@ void check_for_interrupt() {
 
 Input::Input(const InputOptions& options) : subject_(std::make_unique<Subject>(options, true)) {}
 
-Input::Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping)
-    : matrices_(std::make_unique<Model>(
-          std::make_unique<MatrixSystem>(prepare_nonsymmetric(stiffness, mass, damping)))) {}
+Input::Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping,
+             const SparseMatrix& implicit_damping)
+    : matrices_(std::make_unique<Model>(std::make_unique<MatrixSystem>(
+          prepare_nonsymmetric(stiffness, mass, damping, {}, implicit_damping)))) {}
 
 }  // namespace springstab
 
@@ -38,10 +39,12 @@ PYBIND11_MODULE(_core, module) {
 
   py::class_<Input>(module, "Input")
       .def(py::init([](const SparseMatrix& k, const std::optional<SparseMatrix>& m,
-                       const std::optional<SparseMatrix>& d) {
-             return std::make_unique<Input>(k, m.value_or(SparseMatrix()), d.value_or(SparseMatrix()));
+                       const std::optional<SparseMatrix>& d, const std::optional<SparseMatrix>& implicit) {
+             return std::make_unique<Input>(k, m.value_or(SparseMatrix()), d.value_or(SparseMatrix()),
+                                            implicit.value_or(SparseMatrix()));
            }),
-           py::arg("stiffness"), py::arg("mass") = py::none(), py::arg("damping") = py::none())
+           py::arg("stiffness"), py::arg("mass") = py::none(), py::arg("damping") = py::none(),
+           py::arg("implicit_damping") = py::none())
       .def(py::init([](const std::string& file, const std::string& grid, std::optional<double> spacing,
                        const std::string& material, const std::string& pin, std::optional<double> scale,
                        const std::string& diagonals) {
@@ -61,8 +64,9 @@ PYBIND11_MODULE(_core, module) {
       .def_property_readonly("is_scene", [](const Input& input) { return input.scene() != nullptr; })
       .def_property_readonly(
           "faces", [](const Input& input) { return input.scene() ? input.scene()->faces() : Faces(); });
+  bind_region(module);  // first: the others name its Method
+  bind_diagnose(module);
   bind_limits(module);
   bind_own_step(module);
-  bind_region(module);
   bind_simulate(module);
 }

@@ -19,7 +19,8 @@ namespace py = pybind11;
 class Input {
  public:
   explicit Input(const InputOptions& options);
-  Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping);
+  Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping,
+        const SparseMatrix& implicit_damping);
 
   Model& model() { return subject_ ? *subject_ : *matrices_; }
   /// Null where it has no vertices.
@@ -33,6 +34,7 @@ class Input {
 /// Raises KeyboardInterrupt where Ctrl-C was typed. To be called without the interpreter's lock.
 void check_for_interrupt();
 
+void bind_diagnose(py::module_& module);
 void bind_limits(py::module_& module);
 void bind_own_step(py::module_& module);
 void bind_region(py::module_& module);

@@ -52,20 +52,12 @@ struct Answer {
   std::optional<double> growth;
 };
 
-Answer answer(Input& input, const std::vector<std::string>& names, double safety,
-              std::optional<double> max_step, std::uint64_t seed, bool certify) {
+Answer answer(Input& input, std::vector<Method> methods, const StructureLimitsOptions& options) {
   const py::gil_scoped_release others_run;
-  std::vector<Method> methods(names.begin(), names.end());
-  if (names.empty()) methods = all_methods();
-  Structure structure = input.model().structure(input.model().initial_state(seed));
-  if (certify && input.scene()) structure.every_pose = input.scene()->every_pose();
-  Answer a{StructureLimits(std::move(structure), {.safety = safety,
-                                                  .certify = certify,
-                                                  .seed = seed,
-                                                  .max_step = max_step,
-                                                  .before_product = check_for_interrupt}),
-           {},
-           {}};
+  if (methods.empty()) methods = all_methods();
+  Structure structure = input.model().structure(input.model().initial_state(options.seed));
+  if (options.certify && input.scene()) structure.every_pose = input.scene()->every_pose();
+  Answer a{StructureLimits(std::move(structure), options), {}, {}};
   for (const Method& method : methods) a.methods.emplace_back(method, a.limits.limits(method));
   if (a.limits.k0().converged) a.growth = a.limits.growth();
   return a;
@@ -76,9 +68,16 @@ Answer answer(Input& input, const std::vector<std::string>& names, double safety
 void bind_limits(py::module_& module) {
   module.def(
       "limits",
-      [](Input& input, const std::vector<std::string>& methods, double safety, std::optional<double> max_step,
-         std::uint64_t seed, bool certify) {
-        Answer a = answer(input, methods, safety, max_step, seed, certify);
+      [](Input& input, const std::vector<Method>& methods, double safety, std::optional<double> max_step,
+         std::uint64_t seed, bool certify, int digits, double certify_loss) {
+        Answer a = answer(input, methods,
+                          {.safety = safety,
+                           .certify = certify,
+                           .seed = seed,
+                           .digits = digits,
+                           .certify_loss = certify_loss,
+                           .max_step = max_step,
+                           .before_product = check_for_interrupt});
         const auto& [matrices, damping, every_pose] = a.limits.structure();
         py::dict d, list;
         for (const auto& [method, limits] : a.methods)
@@ -95,7 +94,7 @@ void bind_limits(py::module_& module) {
         return d;
       },
       py::arg("input"), py::arg("methods"), py::arg("safety"), py::arg("max_step"), py::arg("seed"),
-      py::arg("certify"));
+      py::arg("certify"), py::arg("digits"), py::arg("certify_loss"));
 }
 
 }  // namespace springstab

@@ -21,14 +21,13 @@ void bind_own_step(py::module_& module) {
   module.attr("same_eigenvalues") = same_eigenvalues;
   module.def(
       "largest_stable_step",
-      [](const Step& step, const Vector& x, const Vector& v, const std::vector<std::string>& names,
+      [](const Step& step, const Vector& x, const Vector& v, const std::vector<Method>& methods,
          double difference, double first_step) {
         const StepMap map{x.size(), [&](double h, Vector& x_now, Vector& v_now) {
                             std::tie(x_now, v_now) = step(x_now, v_now, h);
                           }};
         const StepMapOptions options{.difference = difference, .first_step = first_step};
         const LargestStep largest = largest_stable_step(map, x, v, options);
-        const std::vector<Method> methods(names.begin(), names.end());
         py::dict d;
         d["h_max"] = largest.h_max;
         d["leaves_at"] = largest.leaves_at;

@@ -1,7 +1,11 @@
 // Methods and their regions.
 #include "experiments/region.h"
+
+#include <pybind11/operators.h>
+
 #include "analysis/regions/amplification.h"
 #include "analysis/regions/stability_region.h"
+#include "experiments/inputs/method_file.h"
 #include "python/bindings.h"
 
 namespace springstab {
@@ -58,6 +62,9 @@ py::list arcs_of(const Method& method, const std::optional<std::array<double, 4>
 void bind_region(py::module_& module) {
   py::class_<Method>(module, "Method")
       .def(py::init<const std::string&>(), py::arg("name"))
+      .def_static("of_file", read_method_file, py::arg("path"))
+      .def_static("of_text", parse_method, py::arg("source"), py::arg("text"))
+      .def(py::self == py::self)
       .def_property_readonly("name", [](const Method& method) { return method.name(); })
       .def_property_readonly("order", [](const Method& method) { return method.info().order; })
       .def_property_readonly("implicit", [](const Method& method) { return method.info().implicit; })

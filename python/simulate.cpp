@@ -56,13 +56,19 @@ State<Vector> start_of(Model& model, std::uint64_t seed, const std::optional<Vec
   return state;
 }
 
-py::dict simulate(Input& input, const StepOptions& options, int frames, const Callback& callback,
-                  const std::optional<Vector>& x, const std::optional<Vector>& v) {
+py::dict simulate(Input& input, const StepOptions& options, bool designed, int newton, int frames,
+                  const Callback& callback, const std::optional<Vector>& x, const std::optional<Vector>& v) {
   Model& model = input.model();
+  if (designed) {
+    expect_designable(model);
+    model.design_damping();
+  }
   StepChooser chooser(model, options);
   const State<Vector> start = start_of(model, options.seed, x, v);
   State<Vector> state = start;
   Frames kept{.interval = frames > 0 ? options.duration / frames : 0};
+  const auto stepper = options.method.stepper();
+  if (model.scene()) stepper->set_newton({.steps = newton});
   SimulationResult result;
   StepPlan plan{};
   bool stopped = false;
@@ -82,8 +88,8 @@ py::dict simulate(Input& input, const StepOptions& options, int frames, const Ca
     const auto contact = input.scene() ? input.scene()->contact_filter() : nullptr;
     EnergyWatch watch = chooser.watch(start);
     if (contact) watch = with_obstacles(watch, *input.scene()->contact());
-    result = springstab::simulate(model.system(), *chooser.method().stepper(), plan, watch, state, observe,
-                                  chooser.policy(), contact.get());
+    result = springstab::simulate(model.system(), *stepper, plan, watch, state, observe, chooser.policy(),
+                                  contact.get());
   }
   py::dict d;
   d["method"] = chooser.method().name();
@@ -107,19 +113,22 @@ py::dict simulate(Input& input, const StepOptions& options, int frames, const Ca
 void bind_simulate(py::module_& module) {
   module.def(
       "simulate",
-      [](Input& input, const std::string& method, double duration, std::optional<double> step,
-         std::optional<double> max_step, double safety, std::uint64_t seed, int frames,
-         const Callback& callback, const std::optional<Vector>& x, const std::optional<Vector>& v) {
+      [](Input& input, const Method& method, double duration, std::optional<double> step,
+         std::optional<double> max_step, double safety, double relinearize, bool designed, int newton,
+         std::uint64_t seed, int frames, const Callback& callback, const std::optional<Vector>& x,
+         const std::optional<Vector>& v) {
         const StepOptions options{.method = method,
                                   .duration = duration,
                                   .step = step,
                                   .max_step = max_step,
                                   .safety = safety,
+                                  .relinearize = relinearize,
                                   .seed = seed};
-        return simulate(input, options, frames, callback, x, v);
+        return simulate(input, options, designed, newton, frames, callback, x, v);
       },
       py::arg("input"), py::arg("method"), py::arg("duration"), py::arg("step"), py::arg("max_step"),
-      py::arg("safety"), py::arg("seed"), py::arg("frames"), py::arg("callback"), py::arg("x"), py::arg("v"));
+      py::arg("safety"), py::arg("relinearize"), py::arg("designed"), py::arg("newton"), py::arg("seed"),
+      py::arg("frames"), py::arg("callback"), py::arg("x"), py::arg("v"));
 }
 
 }  // namespace springstab

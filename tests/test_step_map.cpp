@@ -8,6 +8,7 @@
 #include "analysis/structure_limits.h"
 #include "solvers/linear/matrix_system.h"
 #include "tests/command.h"
+#include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(step_map)
 
@@ -103,6 +104,65 @@ for line in sys.stdin:
   BOOST_TEST(found.json()["is_what_it_claims"] == true);
   BOOST_TEST(found.json()["ratio"].get<double>() == 1, tolerance(1e-5));
   BOOST_TEST((*this)("probe --size 1 --claims rk4" + program).json()["is_what_it_claims"] == false);
+}
+
+// The examples, in three languages: n pendulums of 10 1/s², joined by 400 1/s², between walls.
+BOOST_FIXTURE_TEST_CASE(the_examples_have_their_methods_limits, Command) {
+  const std::string probes = "'" SPRINGSTAB_SOURCE_DIR "/experiments/probes/";
+  const auto has = [&](const std::string& line, const std::string& what) {
+    if (shell(line + " >&2").status == 0) return true;
+    BOOST_TEST_MESSAGE("skipped, for there is no " << what);
+    return false;
+  };
+  const auto check = [&](const std::string& method, const std::string& program) {
+    const Outcome found = (*this)("probe --json --size 3 --claims " + method + " -- " + program);
+    BOOST_TEST_CONTEXT(program) {
+      BOOST_REQUIRE_MESSAGE(found.status == 0, found.err);
+      const double k0 = 10 + 400 * (2 + std::sqrt(2.0));
+      if (method != "rk4")
+        BOOST_TEST(found.json()["h_max"].get<double>() == 2 / std::sqrt(k0), tolerance(1e-5));
+      BOOST_TEST(found.json()["is_what_it_claims"] == true);
+      BOOST_TEST(found.json()["ratio"].get<double>() == 1, tolerance(1e-4));
+    }
+  };
+  check("rk4", "python3 " + probes + "pendulums.py'");
+  if (has("command -v node", "node")) check("symplectic-euler", "node " + probes + "pendulums.mjs'");
+  if (has("c++ -std=c++17 -O0 " + probes + "pendulums.cpp' -o pendulums", "compiler with nlohmann's JSON"))
+    check("velocity-verlet", "./pendulums");
+}
+
+// MuJoCo's steps, which were measured by runs of 6000 random steps. Its RK4 without damping: √8/√k0, so that
+// it is also compared with what it claims.
+BOOST_FIXTURE_TEST_CASE(the_engines_thresholds_are_found, Command) {
+  const auto chain = test::shared_data("engines/mujoco_chain.json");
+  if (!chain) return;
+  if (shell("node -e 'require.resolve(\"mujoco-js\")' 2>/dev/null").status != 0) {
+    BOOST_TEST_MESSAGE("skipped, for there is no npm package mujoco-js (NODE_PATH may name the folder)");
+    return;
+  }
+  const auto measured = nlohmann::json::parse(test::content_of(*chain))["largest_stable_step"];
+  const auto probed = [&](const std::string& claims, const std::string& words) {
+    const Outcome found =
+        (*this)("probe --json --size 9 --timeout 60 " + claims +
+                " -- node '" SPRINGSTAB_SOURCE_DIR "/experiments/probes/mujoco_chain.mjs' '" +
+                chain->string() + "' " + words);
+    BOOST_REQUIRE_MESSAGE(found.status == 0, found.err);
+    return found.json();
+  };
+  for (const auto& [key, words] :
+       std::vector<std::pair<const char*, const char*>>{{"Euler, no damping", "Euler none"},
+                                                        {"Euler, spring dampers", "Euler spring"},
+                                                        {"Euler, joint dampers", "Euler joint"},
+                                                        {"Euler, both", "Euler both"},
+                                                        {"RK4, both", "RK4 both"},
+                                                        {"implicitfast, both", "implicitfast both"},
+                                                        {"implicit, both", "implicit both"}})
+    BOOST_TEST_CONTEXT(key)
+  BOOST_TEST(probed("", words)["h_max"].get<double>() == measured[key].get<double>(), tolerance(1e-4));
+  const auto rk4 = probed("--claims rk4", "RK4 none");
+  BOOST_TEST(rk4["h_max"].get<double>() == measured["RK4, no damping"].get<double>(), tolerance(1e-4));
+  BOOST_TEST(rk4["is_what_it_claims"] == true);
+  BOOST_TEST(rk4["ratio"].get<double>() == 1, tolerance(1e-4));
 }
 
 BOOST_FIXTURE_TEST_CASE(a_program_that_does_not_answer_gets_a_line, Command) {

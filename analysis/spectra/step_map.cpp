@@ -27,6 +27,8 @@ constexpr double sharp = 1e-5, differences = 1e-9, well_below = 1.3;
 // Times the largest rate of motion: steps from which accelerations are seen, and by which methods differ.
 constexpr double small_step = 1e-3, telling_step = 1;
 constexpr double longest = 1e12;  // times the first step
+// Of D' beside √‖K'‖: differences of undamped steps, by which motions would seem to grow by themselves.
+constexpr double no_damping = 1e-6;
 
 double displacement(const Vector& x, double difference) {
   const double largest = x.lpNorm<Eigen::Infinity>();
@@ -199,7 +201,9 @@ std::vector<MethodFit> methods_that_fit(const StepMap& map, const Vector& x, con
   check(map, x, v);
   const auto matrices = [&](double h) {
     const Accelerations a = accelerations(map, x, v, h, options.difference);
-    return prepare_nonsymmetric(a.stiffness.sparseView(), {}, SparseMatrix(a.damping.sparseView()));
+    const bool damped = a.damping.norm() > no_damping * std::sqrt(a.stiffness.norm());
+    return prepare_nonsymmetric(a.stiffness.sparseView(), {},
+                                damped ? SparseMatrix(a.damping.sparseView()) : SparseMatrix());
   };
   const auto rate = [](const StructuralMatrices& s) {
     return std::max(std::sqrt(Eigen::MatrixXd(s.stiffness).norm()),

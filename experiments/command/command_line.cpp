@@ -22,7 +22,7 @@ namespace {
 std::vector<Subcommand> all_subcommands() {
   return {methods_command(),    region_command(),         limits_command(),     simulate_command(),
           complexity_command(), work_precision_command(), divergence_command(), stress_command(),
-          figures_command(),    probe_command()};
+          figures_command(),    probe_command(),          diagnose_command()};
 }
 
 CLI::Option* add_target(CLI::App& app, const Option& option, bool* flag) {

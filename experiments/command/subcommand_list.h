@@ -59,6 +59,7 @@ Subcommand complexity_command();      // what the methods cost (paper §5)
 Subcommand work_precision_command();  // error against run time on a scene or a system of matrices
 Subcommand divergence_command();      // theory against simulation
 Subcommand probe_command();           // another program's integrator
+Subcommand diagnose_command();        // a run that blew up, from its frames
 Subcommand stress_command();          // stiff, extreme and hostile cases by every method
 Subcommand figures_command();         // computes and plots
 

@@ -6,6 +6,7 @@
 0.1
 """
 
+from ._diagnose import Diagnosis, GrowthFit, Pattern, diagnose
 from ._limits import Damping, Design, Limits, MethodLimits, StiffestMode, limits
 from ._own_step import MethodFit, OwnStep, largest_stable_step
 from ._region import BoundaryArc, Method, Region, methods, region
@@ -13,6 +14,7 @@ from ._simulate import Simulation, simulate
 from ._plot import plot_region
 
 __all__ = [
-    "BoundaryArc", "Damping", "Design", "Limits", "Method", "MethodFit", "MethodLimits", "OwnStep", "Region", "Simulation",
-    "StiffestMode", "largest_stable_step", "limits", "methods", "plot_region", "region", "simulate",
+    "BoundaryArc", "Damping", "Design", "Diagnosis", "GrowthFit", "Limits", "Method", "MethodFit", "MethodLimits",
+    "OwnStep", "Pattern", "Region", "Simulation", "StiffestMode", "diagnose", "largest_stable_step", "limits",
+    "methods", "plot_region", "region", "simulate",
 ]

@@ -5,7 +5,9 @@ import numpy as np
 same_eigenvalues: float
 
 class Input:
-    def __init__(self, stiffness: Any = ..., mass: Any = ..., damping: Any = ..., **words: Any) -> None: ...
+    def __init__(
+        self, stiffness: Any = ..., mass: Any = ..., damping: Any = ..., implicit_damping: Any = ..., **words: Any
+    ) -> None: ...
     @property
     def size(self) -> int: ...
     @property
@@ -15,6 +17,10 @@ class Input:
 
 class Method:
     def __init__(self, name: str) -> None: ...
+    @staticmethod
+    def of_file(path: str) -> "Method": ...
+    @staticmethod
+    def of_text(source: str, text: str) -> "Method": ...
     @property
     def name(self) -> str: ...
     @property
@@ -31,10 +37,18 @@ class Method:
 
 def methods() -> Tuple[List[Method], List[Method]]: ...
 def limits(
-    input: Input, methods: List[str], safety: float, max_step: Optional[float], seed: int, certify: bool
+    input: Input, methods: List[Method], safety: float, max_step: Optional[float], seed: int, certify: bool,
+    digits: int, certify_loss: float,
+) -> Dict[str, Any]: ...
+def diagnose(
+    frames: Any, h: float, every: int, input: Optional[Input], methods: List[Method]
+) -> Dict[str, Any]: ...
+def largest_stable_step(
+    step: Callable[[np.ndarray, np.ndarray, float], Tuple[np.ndarray, np.ndarray]], x: Any, v: Any,
+    methods: List[Method], difference: float, first_step: float,
 ) -> Dict[str, Any]: ...
 def simulate(
-    input: Input, method: str, duration: float, step: Optional[float], max_step: Optional[float],
-    safety: float, seed: int, frames: int,
+    input: Input, method: Method, duration: float, step: Optional[float], max_step: Optional[float],
+    safety: float, relinearize: float, designed: bool, newton: int, seed: int, frames: int,
     callback: Optional[Callable[[float, np.ndarray, np.ndarray], object]], x: Any, v: Any,
 ) -> Dict[str, Any]: ...

@@ -13,12 +13,12 @@ def _matrix(a):
     return None if a is None else scipy.sparse.csc_matrix(a, dtype=float)
 
 
-def as_input(source, mass, damping, grid, spacing, material, pin, scale, diagonals):
+def as_input(source, mass, damping, grid, spacing, material, pin, scale, diagonals, implicit_damping=None):
     """An input of the extension from a file's name, a grid, or matrices."""
     of_geometry = dict(grid=grid, spacing=spacing, material=material, pin=pin, scale=scale, diagonals=diagonals)
     is_file = isinstance(source, (str, os.PathLike))
     if source is None or is_file:
-        if mass is not None or damping is not None:
+        if mass is not None or damping is not None or implicit_damping is not None:
             raise ValueError("M and D are matrices beside K, expected no scene")
         words = {name: "" if value is None else value for name, value in of_geometry.items()}
         words["spacing"], words["scale"] = spacing, scale
@@ -26,7 +26,7 @@ def as_input(source, mass, damping, grid, spacing, material, pin, scale, diagona
     given = [name for name, value in of_geometry.items() if value is not None]
     if given:
         raise ValueError(f"{given[0]} is for grids and meshes, expected none beside matrices")
-    return _core.Input(_matrix(source), _matrix(mass), _matrix(damping))
+    return _core.Input(_matrix(source), _matrix(mass), _matrix(damping), _matrix(implicit_damping))
 
 
 def positive(name, value, unit="seconds"):

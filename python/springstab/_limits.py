@@ -8,7 +8,7 @@ from typing import Dict, Iterator, Mapping, Optional, Sequence, Union
 
 from . import _core
 from ._input import as_input, positive
-from ._region import Method
+from ._region import AnyMethod, Method, as_method
 
 
 @dataclass(frozen=True)
@@ -136,8 +136,9 @@ class Limits(Mapping[str, MethodLimits]):
                 f"<thead>{row(self._head, 'th')}</thead><tbody>{body}</tbody></table>")
 
 
-def limits(K=None, M=None, D=None, *, methods: Sequence[Union[str, Method]] = (), safety: float = 1.5,
-           max_step: float = 0.01, certify: bool = True, seed: int = 1, grid: Optional[str] = None,
+def limits(K=None, M=None, D=None, *, methods: Sequence[AnyMethod] = (), safety: float = 1.5,
+           max_step: float = 0.01, certify: bool = True, digits: Optional[int] = None,
+           certify_loss: float = 1e-3, implicit_damping=None, seed: int = 1, grid: Optional[str] = None,
            spacing: Optional[float] = None, material: Optional[str] = None, pin: Optional[str] = None,
            scale: Optional[float] = None, diagonals: Optional[str] = None) -> Limits:
     """The largest stable step of each method for ``M x'' = −K x − D v``, or for a scene.
@@ -148,10 +149,14 @@ def limits(K=None, M=None, D=None, *, methods: Sequence[Union[str, Method]] = ()
         Stiffness [N/m], or the file of a scene or a mesh. With ``grid="NxM"`` nothing.
     M, D : (n, n) array or sparse matrix, optional
         Mass [kg] (default: 1) and damping [kg/s] (default: none).
-    methods : names of methods; default: those of the command
+    methods : whatever :class:`Method` takes, each; default: those of the command
     safety : factor >= 1 on the stiffness, for the recommended steps
     max_step : recommended where nothing limits the step [s]
     certify : False leaves out every proof, which is quicker
+    digits : of h, 1 to 10; default: all, or 4 from 20 000 unknowns on
+    certify_loss : part of h that a proof by pieces of a large system may lose
+    implicit_damping : (n, n) array or sparse matrix, optional
+        More of D [kg/s]: what implicit-damping-euler takes implicitly (default: all of D).
     grid, spacing, material, pin, scale, diagonals
         As the command's options of these names.
 
@@ -177,8 +182,13 @@ def limits(K=None, M=None, D=None, *, methods: Sequence[Union[str, Method]] = ()
     'unlimited'
     """
     positive("max_step", max_step)
-    of = as_input(K, M, D, grid, spacing, material, pin, scale, diagonals)
-    found = _core.limits(of, [str(m) for m in methods], safety, max_step, seed, certify)
+    if digits is not None and not 1 <= digits <= 10:
+        raise ValueError(f"digits: is {digits}, expected 1 to 10")
+    if not 1e-5 <= certify_loss < 1:
+        raise ValueError(f"certify_loss: is {certify_loss:g}, expected at least 1e-5 and less than 1")
+    of = as_input(K, M, D, grid, spacing, material, pin, scale, diagonals, implicit_damping)
+    found = _core.limits(of, [as_method(m)._method for m in methods], safety, max_step, seed, certify, digits or 0,
+                         certify_loss)
     found["k0"] = StiffestMode(**found["k0"])
     found["damping"] = Damping(**found["damping"])
     for one in found["methods"].values():

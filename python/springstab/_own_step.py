@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, List, Optional, Tuple, Union
+from typing import Callable, List, Optional, Tuple
 
 import numpy as np
 
 from . import _core
 from ._input import positive
-from ._region import Method, methods
+from ._region import AnyMethod, as_method, methods
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class OwnStep:
 
 
 def largest_stable_step(step: Callable[[np.ndarray, np.ndarray, float], Tuple[np.ndarray, np.ndarray]], x, v,
-                        claims: Union[None, str, Method] = None, *, difference: float = 1e-6,
+                        claims: Optional[AnyMethod] = None, *, difference: float = 1e-6,
                         first_step: float = 1e-3) -> OwnStep:
     """The largest stable step of any integrator ``step(x, v, h) -> (x, v)``, linearized at (x, v).
 
@@ -86,12 +86,15 @@ def largest_stable_step(step: Callable[[np.ndarray, np.ndarray, float], Tuple[np
     positive("difference", difference, "the size of x")
     positive("first_step", first_step)
     x, v = (np.array(a, dtype=float).ravel() for a in (x, v))
-    names = [m.name for m in methods()]
-    if claims is not None and Method(str(claims)).name not in names:
-        names.append(str(claims))
-    found = _core.largest_stable_step(lambda *now: step(*now), x, v, names, difference, first_step)
+    known = methods()
+    if claims is not None:
+        claims = as_method(claims)
+        if claims not in known:
+            known.append(claims)
+    found = _core.largest_stable_step(lambda *now: step(*now), x, v, [m._method for m in known], difference,
+                                      first_step)
     fits = [MethodFit(**fit) for fit in found["fits"]]
-    claimed = next((fit for fit in fits if claims is not None and fit.method == Method(str(claims)).name), None)
+    claimed = next((fit for fit in fits if claims is not None and fit.method == claims.name), None)
     if claims is not None and claimed is None:
         raise ValueError(f"claims: {claims} solves systems whose eigenvalues are not those of single modes")
     return OwnStep(h_max=found["h_max"], leaves_at=found["leaves_at"], fits=fits, claimed=claimed)

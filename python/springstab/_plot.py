@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Optional, Tuple, Union
 
-from ._region import Method, Region, region
+from ._region import AnyMethod, Region, region
 
 _styles = {"complex_pair": "-", "lambda=-1": "--", "lambda=1": ":"}
 
 
-def plot_region(method: Union[str, Method, Region], ax=None,
+def plot_region(method: Union[AnyMethod, Region], ax=None,
                 window: Optional[Tuple[float, float, float, float]] = None, **line):
     """Draws the exact boundary of a method's stable region; returns the axes.
 

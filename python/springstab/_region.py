@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import os
 from dataclasses import dataclass, field
-from typing import List, Optional, Tuple, Union
+from typing import Any, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -11,16 +13,25 @@ from . import _core
 
 
 class Method:
-    """A time-stepping method by name, with parameters if it has any: ``Method("newmark:beta=0.25,gamma=0.5")``.
+    """A time-stepping method: by name, with parameters if it has any (``Method("newmark:beta=0.25,gamma=0.5")``),
+    from a method file (``Method("mine.json")``), or from what such a file holds, as a dictionary.
 
-    Raises ValueError for a name or a parameter that is not known.
+    Raises ValueError for a name, a parameter or a key that is not known, and for an inconsistent tableau.
 
     >>> Method("rk4").order
     4
+    >>> ralston = Method({"name": "ralston", "kind": "runge-kutta", "A": [[], ["2/3"]], "b": ["1/4", "3/4"]})
+    >>> ralston.order
+    2
     """
 
-    def __init__(self, name: str):
-        self._method = _core.Method(name)
+    def __init__(self, method: Union[str, os.PathLike, Mapping[str, Any]]):
+        if isinstance(method, Mapping):
+            self._method = _core.Method.of_text("method", json.dumps(dict(method), indent=1))
+        elif isinstance(method, os.PathLike) or method.endswith(".json"):
+            self._method = _core.Method.of_file(os.fspath(method))
+        else:
+            self._method = _core.Method(method)
 
     @property
     def name(self) -> str:
@@ -47,10 +58,17 @@ class Method:
         return f"Method({self.name!r})"
 
     def __eq__(self, other) -> bool:
-        return isinstance(other, Method) and self.name == other.name
+        return isinstance(other, Method) and self._method == other._method
 
     def __hash__(self) -> int:
         return hash(self.name)
+
+
+AnyMethod = Union[str, os.PathLike, Mapping[str, Any], Method]
+
+
+def as_method(method: AnyMethod) -> Method:
+    return method if isinstance(method, Method) else Method(method)
 
 
 def methods() -> List[Method]:
@@ -102,8 +120,8 @@ class Region:
         return self.method._method.critical_step(k, d)
 
 
-def region(method: Union[str, Method]) -> Region:
-    """The stable region of a method.
+def region(method: AnyMethod) -> Region:
+    """The stable region of a method: whatever :class:`Method` takes.
 
     >>> rk4 = region("rk4")
     >>> round(rk4.imaginary_interval, 9)
@@ -111,5 +129,5 @@ def region(method: Union[str, Method]) -> Region:
     >>> rk4.critical_step(100.0) == rk4.imaginary_interval / 10
     True
     """
-    method = method if isinstance(method, Method) else Method(method)
+    method = as_method(method)
     return Region(method=method, **method._method.constants())

@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr std::size_t vertices_named = 10, methods_named = 5;
+constexpr std::size_t vertices_named = 10, methods_shown = 5;
 constexpr double blown_up = 1e3;  // times the size of the first frame
 
 // What lies apart in the first frame, or where that is a point, the largest number.
@@ -83,7 +83,7 @@ void add_structure(const Diagnosis& found, Json& json) {
                      {"overlap_with_stiffest_mode", number(seen.overlap)}};
   if (const auto* fit = found.fit()) json["fits"] = method_json(*fit);
   for (const auto& one : seen.methods)
-    if (json["methods"].size() < methods_named || one.fits) json["methods"].push_back(method_json(one));
+    if (json["methods"].size() < methods_shown || one.fits) json["methods"].push_back(method_json(one));
 }
 
 }  // namespace

@@ -31,14 +31,14 @@ const char* name_of(const ContactModel& model) {
   return std::holds_alternative<LandingImpulses>(model) ? "impulses" : "inelastic";
 }
 
-Json draw_walled(const std::string& base, const CommonOptions& common, const FiguresOptions& options) {
+Json draw_walled(const FigureFiles& at, const CommonOptions& common, const FiguresOptions& options) {
   std::vector<WalledRuns> table = walled_table();
   const int count = options.quick ? 12 : 60;
   const long steps = options.quick ? 500 : 3000;
   parallel_ranges(static_cast<long>(table.size()), 1, common.threads, [&](long first, long last) {
     for (long i = first; i < last; ++i) table[i] = run_between_walls(table[i], count, steps);
   });
-  OutputFile file(base + ".csv");
+  OutputFile file(at.data + ".csv");
   file.stream() << "structure,method,model,part,runs,diverged,largest_energy\n";
   int proved = 0, inelastic = 0, runs = 0;
   for (const WalledRuns& row : table) {
@@ -51,8 +51,8 @@ Json draw_walled(const std::string& base, const CommonOptions& common, const Fig
   file.commit();
   std::vector<std::string> files =
       draw(options.plots + "/contact.gp",
-           "data=" + gnuplot_literal(base + ".csv") + text("; runs=%d; ", count), base);
-  files.push_back(base + ".csv");
+           "data=" + gnuplot_literal(at.data + ".csv") + text("; runs=%d; ", count), at.picture);
+  files.push_back(at.data + ".csv");
   return {
       {"files", files},
       {"holds", proved == 0 && inelastic > 0},
@@ -149,11 +149,11 @@ double write_frames(std::ostream& out, const ShownScene& shown, const std::strin
   return lowest;
 }
 
-Json draw_scenes(const std::string& base, const CommonOptions&, const FiguresOptions& options) {
+Json draw_scenes(const FigureFiles& at, const CommonOptions&, const FiguresOptions& options) {
   std::vector<std::string> files;
   double lowest = 1;
   std::string settings = text("frames=%d; ", shown_frames);
-  OutputFile file(base + ".csv");
+  OutputFile file(at.data + ".csv");
   for (const ShownScene& shown : shown_scenes)
     lowest = std::min(lowest, write_frames(file.stream(), shown, "symplectic-euler"));
   file.commit();
@@ -161,8 +161,8 @@ Json draw_scenes(const std::string& base, const CommonOptions&, const FiguresOpt
     settings += text("title_%zu=", i) + gnuplot_literal(shown_scenes[i].title) +
                 text("; duration_%zu=%g; ", i, shown_scenes[i].duration);
   files = draw(options.plots + "/contact_scenes.gp",
-               "data=" + gnuplot_literal(base + ".csv") + "; " + settings, base);
-  files.push_back(base + ".csv");
+               "data=" + gnuplot_literal(at.data + ".csv") + "; " + settings, at.picture);
+  files.push_back(at.data + ".csv");
   return {
       {"files", files},
       {"holds", lowest > -1e-12},

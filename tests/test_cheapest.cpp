@@ -12,6 +12,8 @@
 #include "experiments/inputs/subject.h"
 #include "tests/command.h"
 
+BOOST_FIXTURE_TEST_SUITE(cheapest, springstab::test::Command)
+
 using namespace springstab;
 using springstab::test::Command;
 using springstab::test::lines;
@@ -103,8 +105,6 @@ MotionSpectrum spectrum_of(Model& model) {
 const std::vector<Method> various{"symplectic-euler", "implicit-euler", "rk4", "newmark", "bdf2", "tr-bdf2"};
 
 }  // namespace
-
-BOOST_FIXTURE_TEST_SUITE(cheapest, springstab::test::Command)
 
 // Of few unknowns the modes are all there is, and the prediction is the error itself; of many it is close.
 BOOST_AUTO_TEST_CASE(a_predicted_error_is_the_measured_one) {

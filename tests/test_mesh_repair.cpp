@@ -1,6 +1,7 @@
 // What is mended in a mesh file: each defect by itself and all together, counted; what is left is the mesh
 // that the file meant, and pins and frames keep the file's numbers.
 #include <boost/test/unit_test.hpp>
+#include <random>
 #include <string>
 #include <vector>
 

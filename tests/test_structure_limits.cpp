@@ -16,6 +16,8 @@
 #include "solvers/spring_chain.h"
 #include "tests/command.h"
 
+BOOST_AUTO_TEST_SUITE(structure_limits)
+
 using namespace springstab;
 using springstab::test::Command;
 
@@ -77,8 +79,6 @@ Structure structure_of_scene(const Cloth& cloth) {
 }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(structure_limits)
 
 BOOST_AUTO_TEST_CASE(numbers_equal_those_of_the_command, *boost::unit_test::label("slow")) {
   const Command command;

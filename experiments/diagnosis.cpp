@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr std::size_t vertices_named = 10, methods_named = 5;
+constexpr std::size_t vertices_shown = 10, methods_shown = 5;
 constexpr double blown_up = 1e3;  // times the size of the first frame
 
 // What lies apart in the first frame, or where that is a point, the largest number.
@@ -38,7 +38,7 @@ void name_vertices(Diagnosis& found, int components) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::ranges::stable_sort(order, std::greater(), share);
-  order.resize(std::min(order.size(), vertices_named));
+  order.resize(std::min(order.size(), vertices_shown));
   for (const Eigen::Index v : order) found.shares.push_back(share(v));
   found.vertices = std::move(order);
 }
@@ -83,7 +83,7 @@ void add_structure(const Diagnosis& found, Json& json) {
                      {"overlap_with_stiffest_mode", number(seen.overlap)}};
   if (const auto* fit = found.fit()) json["fits"] = method_json(*fit);
   for (const auto& one : seen.methods)
-    if (json["methods"].size() < methods_named || one.fits) json["methods"].push_back(method_json(one));
+    if (json["methods"].size() < methods_shown || one.fits) json["methods"].push_back(method_json(one));
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr std::size_t vertices_named = 10, methods_shown = 5;
+constexpr std::size_t vertices_shown = 10, methods_shown = 5;
 constexpr double blown_up = 1e3;  // times the size of the first frame
 
 // What lies apart in the first frame, or where that is a point, the largest number.
@@ -38,7 +38,7 @@ void name_vertices(Diagnosis& found, int components) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(count));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
   std::ranges::stable_sort(order, std::greater(), share);
-  order.resize(std::min(order.size(), vertices_named));
+  order.resize(std::min(order.size(), vertices_shown));
   for (const Eigen::Index v : order) found.shares.push_back(share(v));
   found.vertices = std::move(order);
 }

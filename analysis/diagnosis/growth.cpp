@@ -24,7 +24,7 @@ constexpr double rises = 1.5;     // e-foldings from a window's first to its las
 constexpr double dominant = 0.5;  // share of what grows, at a window's end
 constexpr double coherent = 0.5, coherent_of_smooth = 0.25;  // of the amplitude, from its law
 constexpr int most_rounds = 4;
-constexpr double most_residual = 0.2;
+constexpr double most_residual = 0.12;
 // For a better window after the first with growth: lengths of that, and e-foldings short of the law's end,
 // each of as many, since there it ends by what is no more linear.
 constexpr Index searched = 4;

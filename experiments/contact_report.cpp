@@ -47,7 +47,8 @@ ContactCounts contact_counts_of(const Json& json) {
 }
 
 void add_contact(Json& report, const ContactCounts& counts) {
-  for (const auto& [key, value] : json_of(counts).items())
+  const Json all = json_of(counts);
+  for (const auto& [key, value] : all.items())
     report[value.is_number_integer() ? "counts" : "energy"]["contact"][key] = value;
 }
 

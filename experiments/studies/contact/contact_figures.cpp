@@ -73,12 +73,12 @@ constexpr ShownScene shown_scenes[] = {
         {"plane": {"point": [0, -0.5, 0], "normal": [0, 1, 0]}}], "thickness": 0.006, "friction": 0.3})",
      R"("pins": "none")", 0.8},
     {"A ball rises under a sheet that hangs by its corners",
-     R"({"obstacles": [{"sphere": {"center": [0.39, -1.2, 0.36], "radius": 0.15}, "velocity": [0, 1.4, 0]}],
+     R"({"obstacles": [{"sphere": {"center": [0.39, -0.6, 0.36], "radius": 0.15}, "velocity": [0, 0.7, 0]}],
         "thickness": 0.006, "friction": 0.2})",
      R"("pins": "corners")", 0.8},
     {"A sheet slides down a slope of 30° with a ball on it",
      R"({"obstacles": [{"plane": {"point": [0, -0.02, 0], "normal": [0.5, 0.866025, 0]}},
-        {"sphere": {"center": [0.8, -0.56, 0.3], "radius": 0.12}}], "thickness": 0.006, "friction": 0.2})",
+        {"sphere": {"center": [0.9, -0.56, 0.3], "radius": 0.12}}], "thickness": 0.006, "friction": 0.2})",
      R"("initial": {"velocity": [0.2, 0, 0]})", 0.9}};
 
 using Positions = std::vector<Eigen::Vector3d>;
@@ -91,7 +91,7 @@ void write_rows(std::ostream& out, const Positions& places, std::size_t columns)
   out << '\n';
 }
 
-// A ball as rows of places, or a piece of a plane around the cloth.
+// A ball as rows of places, or a piece of a plane, of a slope twice as long as the cloth.
 Positions surface_of(const Obstacle& obstacle, double t, const Positions& cloth) {
   constexpr int n = 24;
   Positions places;
@@ -108,6 +108,7 @@ Positions surface_of(const Obstacle& obstacle, double t, const Positions& cloth)
   const Plane& plane = std::get<Plane>(obstacle.shape);
   Eigen::Vector3d low = cloth[0], high = low;
   for (const Eigen::Vector3d& p : cloth) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  if (plane.normal.y() < 0.99) high.x() += high.x() - low.x();
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j) {
       Eigen::Vector3d p = low + Eigen::Vector3d(i, 0, j).cwiseProduct(high - low) / n;
@@ -128,6 +129,7 @@ double write_frames(std::ostream& out, const ShownScene& shown, const std::strin
   const StepPlan plan = chooser.first_plan().value();
   const auto filter = subject.contact_filter();
   State<Vector> state = start;
+  const Positions first = subject.scene()->positions(start.x);
   double lowest = 1;
   int written = 0;
   simulate(
@@ -141,7 +143,7 @@ double write_frames(std::ostream& out, const ShownScene& shown, const std::strin
         if (written == shown_frames || run.steps < plan.steps * written / (shown_frames - 1)) return true;
         write_rows(out, cloth, shown_side);
         for (const Obstacle& obstacle : contact.obstacles)
-          write_rows(out, surface_of(obstacle, run.time, cloth), 25);
+          write_rows(out, surface_of(obstacle, run.time, first), 25);
         ++written;
         return true;
       },

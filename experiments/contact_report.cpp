@@ -47,14 +47,15 @@ ContactCounts contact_counts_of(const Json& json) {
 }
 
 void add_contact(Json& report, const ContactCounts& counts) {
-  for (const auto& [key, value] : json_of(counts).items())
+  const Json all = json_of(counts);
+  for (const auto& [key, value] : all.items())
     report[value.is_number_integer() ? "counts" : "energy"]["contact"][key] = value;
 }
 
 std::string contact_text(const ContactCounts& c) {
   std::string out = text("contact: %ld impulses, %ld particles put back on a surface; it took %.4g J",
-                         c.impulses, c.lifts, -c.normal_work);
-  if (c.friction_work != 0) out += text(", friction %.4g J", -c.friction_work);
+                         c.impulses, c.lifts, 0 - c.normal_work);
+  if (c.friction_work != 0) out += text(", friction %.4g J", 0 - c.friction_work);
   if (c.obstacle_work != 0) out += text("; moving obstacles gave %.4g J", c.obstacle_work);
   if (c.unresolved > 0) out += text("; %ld times obstacles left a particle no room", c.unresolved);
   return out + '\n';

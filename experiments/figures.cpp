@@ -15,8 +15,8 @@ namespace {
 
 std::vector<Figure> all_figures() {
   std::vector<Figure> all = region_figures();
-  for (const auto& more : {drape_figures(), timing_figures(), divergence_figures(), precision_figures(),
-                           stress_figures(), contact_figures()})
+  for (const auto& more :
+       {drape_figures(), timing_figures(), divergence_figures(), precision_figures(), stress_figures()})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -82,7 +82,7 @@ Subcommand figures_command() {
       .footer = "example: springstab figures 1 2 --output figures",
       .options = {Option("NAMES", &o->names,
                          "1 to 7 (the paper's), frames, k0, precision-linear and others, long-runs, "
-                         "stress, contact, contact-scenes or any method's name, for its region "
+                         "stress or any method's name, for its region "
                          "(default: all)")
                       .shown_as(""),
                   Option("--quick", &o->quick, "fewer simulated cells, smaller cloths"),

@@ -34,6 +34,5 @@ std::vector<Figure> timing_figures();  // its Figs. 5 to 7
 std::vector<Figure> divergence_figures();
 std::vector<Figure> precision_figures();  // error against run time, long runs
 std::vector<Figure> stress_figures();
-std::vector<Figure> contact_figures();
 
 }  // namespace springstab

@@ -68,7 +68,8 @@ bool Impulses::is_clear(const Motion& p) {
   return true;
 }
 
-// Onto one surface after the other, until all of them are clear.
+// Onto one surface after the other, until all of them are clear. Of a way along it that accelerations within
+// the step have added, friction takes back as much as Coulomb's law lets it for the depth.
 bool Impulses::lift(Motion& p) {
   const double rounding = settled * (p.x.norm() + reach_);
   double deepest = rounding;
@@ -79,6 +80,10 @@ bool Impulses::lift(Motion& p) {
       const Gap at = gap(k, p.x, p.t);
       if (at.gap >= 0) continue;
       p.x -= at.gap * at.normal;
+      const Eigen::Vector3d way =
+          tangential(p.x - p.x_before - p.h * contact_.obstacles[k].velocity, at.normal);
+      const double back = std::min(-contact_.friction * at.gap, way.norm());
+      if (back > 0) p.x -= back * way.normalized();
       moved = true;
       deepest = std::max(deepest, -at.gap);
     }

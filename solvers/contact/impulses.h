@@ -1,6 +1,7 @@
 // Contact with obstacles by impulses behind any method's step. A particle that the step has taken into an
-// obstacle is put back on its surface; then impulses r >= 0 along the normals n change the velocity so that
-// the step to come, x + hv, enters no obstacle:
+// obstacle is put back on its surface, and along it against its way by at most μ times the depth, as far as
+// it came; then impulses r >= 0 along the normals n change the velocity so that the step to come, x + hv,
+// enters no obstacle:
 //     v ← v + (Σ r n + q)/m,   0 <= r ⟂ gap(x) + h n·(v - u) >= 0,   q: friction.h, u: the obstacle's
 //     velocity,
 // in the mass norm, a quadratic program a particle (half_spaces.h), with friction by fixed point. Such

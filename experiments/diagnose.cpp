@@ -27,9 +27,13 @@ void check(const DiagnoseOptions& options) {
   if (options.every < 1) throw InputError("--every", 0, text("is %d, expected at least 1", options.every));
 }
 
+// Also where only what belongs to an input was given: then it is missing, which is said.
 bool has_input(const InputOptions& input) {
-  return !input.file.empty() || !input.grid.empty() || !input.stiffness.empty() || !input.mass.empty() ||
-         !input.damping_matrix.empty();
+  for (const std::string* word :
+       {&input.file, &input.grid, &input.material, &input.pin, &input.diagonals, &input.stiffness,
+        &input.mass, &input.damping_matrix, &input.implicit_damping_matrix, &input.rayleigh})
+    if (!word->empty()) return true;
+  return input.spacing || input.scale || input.sum_duplicates;
 }
 
 std::string words_of(std::complex<double> factor) {

@@ -17,8 +17,7 @@ namespace springstab {
 void set_loop_threads(int count);
 int loop_threads();
 
-/// From about this much work on [ns of one thread] a loop is shared: to hand it out takes one or two
-/// microseconds, and fifty where the other threads have fallen asleep.
+/// From about this much work on [ns of one thread, estimated] a loop is shared.
 inline constexpr double worth_sharing = 50'000;
 
 /// work(part) for an opaque `work`; see share.

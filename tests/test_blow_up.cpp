@@ -103,7 +103,7 @@ BOOST_AUTO_TEST_CASE(runs_of_this_program_are_known_again) {
                                                           {"velocity-verlet", 1.1},
                                                           {"rk4", 1.04},
                                                           {"rk4", 1.15},
-                                                          {"rkc2:stages=3", 1.05},
+                                                          {"newmark:rule=central-difference", 1.05},
                                                           {"nystrom4", 1.05}};
   for (const auto& [method_name, ratio] : cases) BOOST_TEST_CONTEXT(method_name << " at " << ratio) {
       const Method method(method_name);
@@ -203,11 +203,17 @@ BOOST_FIXTURE_TEST_CASE(runs_of_other_programs_are_known_again, Command) {
       const std::string fit = json["fits"]["method"].get<std::string>();
       BOOST_TEST(same_steps(fit, c.method, h, k), fit);
       const Complex factor(json["factor"][0].get<double>(), json["factor"][1].get<double>());
-      const Complex expected = factor_of(c.method, h, net ? k : k0);
-      BOOST_TEST(std::abs(factor - expected) < (net ? 0.06 : 0.01) * std::abs(expected), factor);
-      BOOST_TEST(json["pattern"]["of_stiffest"].get<double>() == 1, tolerance(0.1));
+      // These let every mode grow, the stiffest little faster than the next: the pattern has both.
+      const bool all_grow = std::string(c.method) == "explicit-euler" || std::string(c.method) == "rk2";
+      const Complex expected = factor_of(c.method, h, net || all_grow ? k : k0);
+      BOOST_TEST(std::abs(factor - expected) < (net        ? 0.06
+                                                : all_grow ? 0.02
+                                                           : 0.01) *
+                                                   std::abs(expected),
+                 factor);
+      BOOST_TEST(json["pattern"]["of_stiffest"].get<double>() == 1, tolerance(all_grow ? 0.15 : 0.1));
       const double limit_ratio = std::string(c.method) == "rk4" ? c.ratio / std::sqrt(2) : c.ratio;
-      if (std::string(c.method) == "explicit-euler" || std::string(c.method) == "rk2")
+      if (all_grow)
         BOOST_TEST(json["fits"]["step_over_limit"].is_null());
       else
         BOOST_TEST(json["fits"]["step_over_limit"].get<double>() == limit_ratio,

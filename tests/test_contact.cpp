@@ -14,6 +14,7 @@
 #include "solvers/contact/contact_filter.h"
 #include "solvers/contact/friction.h"
 #include "solvers/contact/penalty.h"
+#include "solvers/methods/symplectic_euler.h"
 #include "solvers/scene/scene.h"
 #include "tests/allocation_counter.h"
 #include "tests/command.h"
@@ -590,6 +591,19 @@ BOOST_FIXTURE_TEST_CASE(limits_and_simulate_say_what_contact_does, test::Command
     BOOST_TEST(refused.err.find("takes no account of contact, expected a scene without 'contact'") !=
                std::string::npos);
   }
+}
+
+BOOST_AUTO_TEST_CASE(a_program_brings_its_own_obstacles) {
+  Scene scene(make_net(Grid{9, 8, 0.07}, {}), {}, {0.1, -9.81, 0}, RayleighDamping{});
+  State<Vector> state = scene.rest_state();
+  const EnergyWatch watch{.gravity = 9.81, .mass = scene.total_free_mass()};
+  Contact contact;
+  contact.obstacles = {{Plane{{0, -1, 0}, {0, 1, 0}}}, {Sphere{{0.5, -0.3, 0.5}, 0.2}}};
+  contact.friction = 0.3;
+  const auto filter = make_contact_filter(contact, scene.free_masses());  // solvers/contact/contact_filter.h
+  simulate(scene, *make_stepper(SymplecticEuler()), {1e-3, 400}, watch, state, {}, {}, filter.get());
+  BOOST_TEST(filter->counts().impulses > 0);
+  BOOST_TEST(least_gap(contact, 0.4, state) > -1e-12);
 }
 
 BOOST_AUTO_TEST_SUITE_END()

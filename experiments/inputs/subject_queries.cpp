@@ -1,0 +1,66 @@
+// What a subject that is built is asked: its particles by the numbers of its file, its elements, and the
+// matrices and contact that no pose exceeds.
+#include <algorithm>
+#include <numeric>
+
+#include "experiments/inputs/subject.h"
+#include "solvers/contact/penalty.h"
+#include "solvers/scene/every_pose.h"
+
+namespace springstab {
+
+std::unique_ptr<ContactFilter> Subject::contact_filter() const {
+  return contact_ ? make_contact_filter(*contact_, scene()->free_masses()) : nullptr;
+}
+
+std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {
+  std::vector<Eigen::Vector3d> particles = scene()->positions(x);
+  return mesh_file_ ? file_vertices(*mesh_file_, particles, stretch_) : particles;
+}
+
+std::vector<long> Subject::vertex_numbers() const {
+  std::vector<long> first(static_cast<std::size_t>(scene()->particles()));
+  std::iota(first.begin(), first.end(), 0);
+  if (!mesh_file_) return first;
+  const std::vector<int>& particle = mesh_file_->repair.vertex;
+  for (long v = std::ssize(particle) - 1; v >= 0; --v)
+    if (particle[static_cast<std::size_t>(v)] >= 0)
+      first[static_cast<std::size_t>(particle[static_cast<std::size_t>(v)])] = v;
+  return first;
+}
+
+std::vector<long> Subject::particle_numbers() const {
+  if (!scene()) return kept_;
+  std::vector<long> numbers;
+  const std::vector<long> all = vertex_numbers();
+  for (int i = 0; i < std::ssize(all); ++i)
+    if (!std::ranges::binary_search(pinned_, i)) numbers.push_back(all[static_cast<std::size_t>(i)]);
+  return numbers;
+}
+
+std::optional<ElementsOf> Subject::elements(const Vector& x) const {
+  if (!scene()) return std::nullopt;
+  ElementsOf elements{
+      [this, at = scene()->positions(x)](const ElementVisitor& visit) { visit_elements_(at, visit); },
+      std::vector<int>(static_cast<std::size_t>(scene()->particles()))};
+  int free = 0;
+  for (int i = 0; i < scene()->particles(); ++i)
+    elements.place[static_cast<std::size_t>(i)] = std::ranges::binary_search(pinned_, i) ? -1 : free++;
+  return elements;
+}
+
+std::optional<StructuralMatrices> Subject::every_pose() const {
+  if (!net_) return std::nullopt;
+  StructuralMatrices all = springstab::every_pose(*net_, pinned_, {damping().d0, damping().alpha});
+  if (const auto contact = contact_bound()) all = in_any_contact(std::move(all), *contact, damping().alpha);
+  return all;
+}
+
+std::optional<ContactBound> Subject::contact_bound() const {
+  const auto* penalty = contact_ ? std::get_if<Penalty>(&contact_->model) : nullptr;
+  if (!penalty) return std::nullopt;
+  const auto most = static_cast<double>(contact_->obstacles.size());
+  return ContactBound{most * penalty->stiffness, most * penalty->damping};
+}
+
+}  // namespace springstab

@@ -114,7 +114,6 @@ def diagnose(frames, h: float, K=None, M=None, D=None, *, every: int = 1,
     A mode of 100 1/s² by symplectic Euler, at 1.1 of its limit of 0.2 s, after a start of 1e-9:
 
     >>> from springstab import simulate
-    >>> from springstab import simulate
     >>> run = simulate([[100.0]], method="symplectic-euler", duration=8.8, step=0.22, x=[1e-9], frames=40)
     >>> found = diagnose(run.frames, 0.22, [[100.0]])
     >>> found.status, f"{found.factor:.3f}", found.fits.method, f"{found.fits.step_over_limit:.3f}"

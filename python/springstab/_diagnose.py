@@ -113,11 +113,14 @@ def diagnose(frames, h: float, K=None, M=None, D=None, *, every: int = 1,
     --------
     A mode of 100 1/s² by symplectic Euler, at 1.1 of its limit of 0.2 s, after a start of 1e-9:
 
-    >>> from springstab import simulate
-    >>> run = simulate([[100.0]], method="symplectic-euler", duration=8.8, step=0.22, x=[1e-9], frames=40)
-    >>> found = diagnose(run.frames, 0.22, [[100.0]])
+    >>> x, v, frames = 1e-9, 0.0, []
+    >>> for _ in range(40):
+    ...     frames.append([x])
+    ...     v -= 0.22 * 100 * x
+    ...     x += 0.22 * v
+    >>> found = diagnose(frames, 0.22, [[100.0]])
     >>> found.status, f"{found.factor:.3f}", found.fits.method, f"{found.fits.step_over_limit:.3f}"
-    ('growing', '-2.429+0.000j', 'symplectic-euler', '1.100')
+    ('growing', '-2.428+0.000j', 'symplectic-euler', '1.100')
     """
     positive("h", h)
     if every < 1:

@@ -259,6 +259,23 @@ void print(StructureLimits& answer, const std::vector<Row>& rows, double safety,
                         std::string(method).c_str(), *limits.every_pose);
 }
 
+std::vector<Row> rows_of(StructureLimits& answer, const std::vector<Method>& methods, Waiting& waiting) {
+  std::vector<Row> rows;
+  for (const Method& method : methods) {
+    waiting.now(method.name());
+    rows.push_back({method.name(), answer.limits(method)});
+  }
+  return rows;
+}
+
+// What was asked for and is not there is no answer.
+int status_of(StructureLimits& answer, const std::vector<Row>& rows, const LimitsOptions& options) {
+  const bool missing = std::ranges::any_of(rows, [&](const Row& row) {
+    return (!options.method.empty() && !row.limits.h_max) || (options.certify && !row.limits.h_certified);
+  });
+  return answer.k0().converged && !missing ? done : no_answer;
+}
+
 }  // namespace
 
 int run_limits(const CommonOptions& common, const LimitsOptions& options) {
@@ -279,18 +296,11 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
                                                 .certify_loss = options.certify_loss,
                                                 .max_step = options.max_step});
 
-  std::vector<Row> rows;
   set_loop_threads(common.threads);
   std::optional<Waiting> waiting(std::in_place, "limits", common.quiet);
   waiting->now("k0");
-  int status = answer.k0().converged ? done : no_answer;
-  for (const Method& method : methods) {
-    waiting->now(method.name());
-    const MethodLimits& limits = answer.limits(method);
-    if (!options.method.empty() && !limits.h_max) status = no_answer;
-    if (options.certify && !limits.h_certified) status = no_answer;
-    rows.push_back({method.name(), limits});
-  }
+  answer.k0();
+  const std::vector<Row> rows = rows_of(answer, methods, *waiting);
   std::optional<ContactLimits> contact;
   if (subject.contact()) contact.emplace(subject, start, names_of(rows), options.safety);
   // Measured, on one thread, and not the same every time: no program gets it unasked.
@@ -328,7 +338,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   print_too_long(answer, rows, subject);
   if (common.given.contains("--max-step") && std::ranges::none_of(rows, nothing_limits))
     std::cerr << "springstab: note: --max-step has no use here: nothing that was asked for is unlimited\n";
-  return status;
+  return status_of(answer, rows, options);
 }
 
 }  // namespace springstab

@@ -193,7 +193,8 @@ BOOST_AUTO_TEST_CASE(impulses_never_raise_the_energy_up_to_the_limit_without_con
 }
 
 // Which is a property of where the impulses let a mass go, not of their taking kinetic energy: these do, too.
-BOOST_AUTO_TEST_CASE(inelastic_impulses_diverge_below_the_limit_without_contact) {
+BOOST_AUTO_TEST_CASE(inelastic_impulses_diverge_below_the_limit_without_contact,
+                     *boost::unit_test::label("slow")) {
   int inelastic = 0, landing = 0, inelastic_at_half = 0;
   for (std::uint64_t seed = 1; seed <= 96; ++seed) {
     inelastic += run_between_walls(seed, 0.99, false, 0, InelasticImpulses(), 3000).last > 1e3;
@@ -290,7 +291,8 @@ BOOST_AUTO_TEST_CASE(a_mass_on_an_incline_sticks_and_slides_as_coulomb_says_with
 }
 
 // Energy to first order in the step: of symplectic Euler in free fall it is hmgv/2 above.
-BOOST_AUTO_TEST_CASE(no_particle_is_below_an_obstacle_at_any_step_of_any_method) {
+BOOST_AUTO_TEST_CASE(no_particle_is_below_an_obstacle_at_any_step_of_any_method,
+                     *boost::unit_test::label("slow")) {
   for (const char* model : {"\"impulses\"", "\"inelastic\""})
     for (const Method& method : every_method()) BOOST_TEST_CONTEXT(method.name() << ' ' << model) {
         Subject subject = subject_of(falling_cloth(model));

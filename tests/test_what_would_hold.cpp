@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(one_oscillator_in_closed_form) {
   BOOST_CHECK_THROW(ForStep(limits, 1, 2), std::invalid_argument);
 }
 
-BOOST_AUTO_TEST_CASE(nets_of_modes) {
+BOOST_AUTO_TEST_CASE(nets_of_modes, *boost::unit_test::label("slow")) {
   test::RandomNets random(5);
   for (int i = 0; i < 3; ++i) {
     StructuralMatrices s = test::matrices(random.net(i % 2 == 0));

@@ -77,6 +77,12 @@ const std::vector<Method>& more_methods() {
   return all;
 }
 
+std::vector<Method> built_in_methods() {
+  std::vector<Method> all = all_methods();
+  all.insert(all.end(), more_methods().begin(), more_methods().end());
+  return all;
+}
+
 void add_method(const Method& method) {
   for (const auto* list : {&all_methods(), &more_methods(), &added_methods()})
     for (const Method& known : *list)

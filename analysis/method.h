@@ -149,6 +149,8 @@ Method make_method(Description description) {
 const std::vector<Method>& all_methods();
 /// The others that are built in, with the parameters they have where none are given.
 const std::vector<Method>& more_methods();
+/// Both, in this order.
+std::vector<Method> built_in_methods();
 
 /// From here on Method(name) is this one, for the whole program. Throws std::invalid_argument for the name of
 /// a built-in method, or of another one added. Not while other threads ask for methods.

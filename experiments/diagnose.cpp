@@ -114,9 +114,7 @@ int run_diagnose(const CommonOptions& common, const DiagnoseOptions& options) {
     subject.emplace(options.input, true);
     print_mesh_notes(*subject);
   }
-  std::vector<Method> methods = all_methods();
-  for (const auto* more : {&more_methods(), &added_methods()})
-    methods.insert(methods.end(), more->begin(), more->end());
+  const std::vector<Method> methods = methods_of("all");
   Diagnosis found;
   {
     const Waiting waiting("diagnosing", common.quiet);

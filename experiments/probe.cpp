@@ -78,8 +78,7 @@ StepMap map_of(ChildProgram& program, Eigen::Index size) {
 }
 
 std::vector<Method> known_methods(const std::string& claims) {
-  std::vector<Method> methods = all_methods();
-  methods.insert(methods.end(), more_methods().begin(), more_methods().end());
+  std::vector<Method> methods = built_in_methods();
   if (!claims.empty() && std::ranges::find(methods, Method(claims)) == methods.end())
     methods.emplace_back(claims);
   return methods;

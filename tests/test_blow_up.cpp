@@ -23,12 +23,6 @@ using Complex = std::complex<double>;
 
 namespace {
 
-std::vector<Method> every_method() {
-  std::vector<Method> methods = all_methods();
-  methods.insert(methods.end(), more_methods().begin(), more_methods().end());
-  return methods;
-}
-
 // The largest eigenvalue of a step of h on the mode (k, d), with its imaginary part >= 0.
 Complex factor_of(const Method& method, double h, double k, double d = 0) {
   Complex largest = 0;
@@ -82,7 +76,7 @@ double limit(Model& model, const Method& method) {
 }
 
 Diagnosis diagnosis_of(const Run& run, Model* model, const Subject* scene) {
-  return diagnose(run.frames, {.h = run.h}, model, scene, "frames", every_method());
+  return diagnose(run.frames, {.h = run.h}, model, scene, "frames", built_in_methods());
 }
 
 void check_silent(const std::string& what, const RunFrames& frames, double h) {
@@ -151,7 +145,7 @@ BOOST_AUTO_TEST_CASE(of_a_linear_run_factor_and_mode_are_exact) {
       const double k0 = answer.k0().value, h = frequency / std::sqrt(k0);
       const Run run = run_of(model, nullptr, method, h, 900, model.initial_state());
       const Diagnosis found = diagnose(run.frames, {.h = h}, &model, nullptr, "frames", [&] {
-        std::vector<Method> known = every_method();
+        std::vector<Method> known = built_in_methods();
         known.push_back(method);
         return known;
       }());

@@ -32,12 +32,6 @@ using springstab::test::random_vector;
 
 namespace {
 
-std::vector<Method> every_method() {
-  std::vector<Method> all = all_methods();
-  all.insert(all.end(), more_methods().begin(), more_methods().end());
-  return all;
-}
-
 Vector3d random_direction(test::RandomNets& random) {
   return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
 }
@@ -273,7 +267,7 @@ BOOST_AUTO_TEST_CASE(friction_is_within_coulombs_cone_and_takes_energy_against_t
 // step's order of accuracy is met by steps of a thousandth.
 BOOST_AUTO_TEST_CASE(a_mass_on_an_incline_sticks_and_slides_as_coulomb_says_with_every_method) {
   const double friction = 0.4, g = 9.81, time = 0.5;
-  for (const Method& method : every_method()) BOOST_TEST_CONTEXT(method.name()) {
+  for (const Method& method : built_in_methods()) BOOST_TEST_CONTEXT(method.name()) {
       const Vector3d stays = Incline(std::atan(0.999 * friction), friction).slide(method, time, 1000);
       BOOST_TEST(stays.norm() < 1e-9);
       const Vector3d creeps = Incline(std::atan(1.001 * friction), friction).slide(method, time, 1000);
@@ -294,7 +288,7 @@ BOOST_AUTO_TEST_CASE(a_mass_on_an_incline_sticks_and_slides_as_coulomb_says_with
 BOOST_AUTO_TEST_CASE(no_particle_is_below_an_obstacle_at_any_step_of_any_method,
                      *boost::unit_test::label("slow")) {
   for (const char* model : {"\"impulses\"", "\"inelastic\""})
-    for (const Method& method : every_method()) BOOST_TEST_CONTEXT(method.name() << ' ' << model) {
+    for (const Method& method : built_in_methods()) BOOST_TEST_CONTEXT(method.name() << ' ' << model) {
         Subject subject = subject_of(falling_cloth(model));
         const State<Vector> start = subject.initial_state();
         const auto filter = subject.contact_filter();
@@ -323,7 +317,7 @@ BOOST_AUTO_TEST_CASE(no_particle_is_below_an_obstacle_at_any_step_of_any_method,
 BOOST_AUTO_TEST_CASE(contact_is_the_same_in_every_frame_that_moves_uniformly) {
   const Vector3d u(0.3, -0.2, 0.1);
   const double h = 1e-3;
-  for (const Method& method : every_method()) BOOST_TEST_CONTEXT(method.name()) {
+  for (const Method& method : built_in_methods()) BOOST_TEST_CONTEXT(method.name()) {
       Vector end[2];
       for (const bool moves : {false, true}) {
         Incline incline(0.7, 0.3);

@@ -27,12 +27,8 @@ Option methods_option(std::string& names) {
 namespace {
 
 std::vector<Method> methods_named(const std::string& names) {
-  std::vector<Method> methods = all_methods();
-  if (names.empty()) return methods;
-  if (names == "all") {
-    methods.insert(methods.end(), more_methods().begin(), more_methods().end());
-    return methods;
-  }
+  if (names.empty()) return all_methods();
+  if (names == "all") return built_in_methods();
   // A comma ends a name unless what follows is key=value, a further parameter.
   std::vector<std::string> words;
   std::istringstream list(names);
@@ -44,7 +40,7 @@ std::vector<Method> methods_named(const std::string& names) {
       words.push_back(word);
     }
   }
-  methods.clear();
+  std::vector<Method> methods;
   for (const std::string& word : words) methods.emplace_back(word);
   return methods;
 }

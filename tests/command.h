@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/places.h"
 #include "tests/scratch.h"
 
 namespace springstab::test {
@@ -35,7 +36,7 @@ class Command {
   /// Any line for the shell, in the folder; its $springstab is the command. stderr is caught too.
   Outcome shell(const std::string& line) const {
     const std::filesystem::path err = folder() / "stderr";
-    const std::string whole = "cd '" + folder().string() + "' && springstab='" SPRINGSTAB_COMMAND "' && { " +
+    const std::string whole = "cd '" + folder().string() + "' && springstab='" + command_path() + "' && { " +
                               line + "\n} 2>'" + err.string() + "'";
     FILE* pipe = popen(whole.c_str(), "r");
     BOOST_REQUIRE(pipe);

@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "tests/places.h"
+
 namespace springstab::test {
 
 /// The file or directory `relative` of the shared data ("matrices/bcsstk01.mtx"); nothing, and a message,
@@ -16,7 +18,7 @@ namespace springstab::test {
 inline std::optional<std::filesystem::path> shared_data(const std::string& relative) {
   const char* directory = std::getenv("SPRINGSTAB_TEST_DATA");
   const auto root = directory ? std::filesystem::path(directory)
-                              : std::filesystem::path(SPRINGSTAB_SOURCE_DIR) / ".." / "shared" / "data";
+                              : std::filesystem::path(source_folder()) / ".." / "shared" / "data";
   const auto path = root / relative;
   if (std::filesystem::exists(path)) return path;
   BOOST_TEST_MESSAGE("skipped, for there is no " << path << " (SPRINGSTAB_TEST_DATA may name the directory)");

@@ -12,6 +12,7 @@
 #include "solvers/io/npy.h"
 #include "solvers/scene/spring_cloth.h"
 #include "tests/command.h"
+#include "tests/places.h"
 
 BOOST_AUTO_TEST_SUITE(blow_up)
 
@@ -162,7 +163,7 @@ BOOST_AUTO_TEST_CASE(of_a_linear_run_factor_and_mode_are_exact) {
 
 // Integrators that are not this program's, in another language and in files of three kinds.
 BOOST_FIXTURE_TEST_CASE(runs_of_other_programs_are_known_again, Command) {
-  const std::string script = "python3 '" SPRINGSTAB_SOURCE_DIR "/tests/foreign_run.py' ";
+  const std::string script = "python3 '" + springstab::test::source_folder() + "/tests/foreign_run.py' ";
   struct Case {
     const char *kind, *method;
     double ratio;  // to 2/√k0

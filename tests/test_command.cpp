@@ -10,6 +10,7 @@
 
 #include "analysis/proofs/sparse_cholesky.h"
 #include "tests/command.h"
+#include "tests/places.h"
 
 BOOST_FIXTURE_TEST_SUITE(command, springstab::test::Command)
 
@@ -432,7 +433,7 @@ BOOST_AUTO_TEST_CASE(an_unused_feature_changes_no_count_and_no_digit) {
 // numbers are what conjugate gradients to 1e-13 and the factorization agree on; to 1e-10 they are 1e-11 m
 // off.
 BOOST_AUTO_TEST_CASE(the_hanging_net_drapes_as_it_always_did, *boost::unit_test::label("slow")) {
-  std::ifstream shipped(SPRINGSTAB_SOURCE_DIR "/experiments/scenes/hanging_net_64.json");
+  std::ifstream shipped(springstab::test::source_folder() + "/experiments/scenes/hanging_net_64.json");
   Json scene = Json::parse(shipped);
   BOOST_TEST(scene["geometry"]["grid"] == Json({64, 64}));
   const struct {

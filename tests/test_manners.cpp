@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tests/command.h"
+#include "tests/places.h"
 
 BOOST_FIXTURE_TEST_SUITE(manners, springstab::test::Command)
 
@@ -52,7 +53,7 @@ std::string on_terminal(const fs::path& folder, std::vector<std::string> argumen
   const pid_t process = forkpty(&terminal, nullptr, nullptr, nullptr);
   BOOST_REQUIRE(process >= 0);
   if (process == 0) {
-    if (chdir(folder.c_str()) == 0) execv(SPRINGSTAB_COMMAND, words.data());
+    if (chdir(folder.c_str()) == 0) execv(springstab::test::command_path().c_str(), words.data());
     _exit(127);
   }
   std::string seen;

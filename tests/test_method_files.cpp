@@ -16,6 +16,7 @@
 #include "experiments/inputs/method_file.h"
 #include "solvers/scene/scene.h"
 #include "tests/command.h"
+#include "tests/places.h"
 #include "tests/random_nets.h"
 #include "tests/refusals.h"
 
@@ -27,7 +28,7 @@ using boost::test_tools::tolerance;
 
 namespace {
 
-const std::string folder = std::string(SPRINGSTAB_SOURCE_DIR) + "/experiments/methods/";
+const std::string folder = source_folder() + "/experiments/methods/";
 
 Method shipped(const std::string& file) { return read_method_file(folder + file + ".json"); }
 

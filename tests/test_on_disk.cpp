@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "tests/command.h"
+#include "tests/places.h"
 
 BOOST_FIXTURE_TEST_SUITE(on_disk, springstab::test::Command)
 
@@ -65,7 +66,7 @@ Events events_of(const fs::path& folder, std::vector<std::string> arguments,
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);
     if (chdir(folder.c_str()) == 0 && ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0)
-      execv(SPRINGSTAB_COMMAND, words.data());
+      execv(springstab::test::command_path().c_str(), words.data());
     _exit(127);
   }
   int status = 0;

@@ -16,6 +16,7 @@
 #include "solvers/io/obj.h"
 #include "solvers/io/text_file.h"
 #include "tests/fuzz/readers.h"
+#include "tests/places.h"
 #include "tests/scratch.h"
 #include "tests/shared_data.h"
 #include "tests/texts.h"
@@ -662,8 +663,8 @@ BOOST_AUTO_TEST_CASE(a_file_of_no_known_format_is_refused) {
 BOOST_AUTO_TEST_CASE(every_beginning_of_every_seed_reads_or_is_refused_with_a_line) {
   for (const springstab::test::Reader& reader : springstab::test::readers()) {
     long read = 0, refused = 0;
-    for (const auto& seed :
-         std::filesystem::directory_iterator(SPRINGSTAB_SOURCE_DIR "/tests/fuzz/corpus/" + reader.name)) {
+    for (const auto& seed : std::filesystem::directory_iterator(springstab::test::source_folder() +
+                                                                "/tests/fuzz/corpus/" + reader.name)) {
       BOOST_TEST_CONTEXT(seed.path()) {
         const std::string text = content_of(seed.path());
         for (std::size_t length = 0; length < text.size(); ++length)

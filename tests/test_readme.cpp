@@ -19,6 +19,7 @@
 #include "analysis/regions/stability_region.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "tests/command.h"
+#include "tests/places.h"
 
 namespace springstab::test {
 namespace {
@@ -42,7 +43,7 @@ struct Rk3 {
   using Steps = ExplicitRungeKutta<V, rk3_tableau>;
 };
 
-const std::filesystem::path source = SPRINGSTAB_SOURCE_DIR;
+const std::filesystem::path source = springstab::test::source_folder();
 
 std::vector<std::filesystem::path> pages() {
   std::vector<std::filesystem::path> all{source / "README.md"};

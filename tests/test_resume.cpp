@@ -24,6 +24,7 @@
 #include "experiments/runs/journal.h"
 #include "experiments/runs/recorder.h"
 #include "solvers/io/input_error.h"
+#include "tests/places.h"
 #include "tests/results.h"
 #include "tests/scratch.h"
 
@@ -59,7 +60,7 @@ class Command {
     };
     redirect(out_, STDOUT_FILENO);
     redirect(err_, STDERR_FILENO);
-    if (chdir(folder.c_str()) == 0) execv(SPRINGSTAB_COMMAND, words.data());
+    if (chdir(folder.c_str()) == 0) execv(springstab::test::command_path().c_str(), words.data());
     _exit(127);
   }
 

@@ -6,6 +6,7 @@
 #include "experiments/command/words.h"
 #include "experiments/inputs/scene_description.h"
 #include "solvers/io/input_error.h"
+#include "tests/places.h"
 #include "tests/refusals.h"
 #include "tests/scratch.h"
 
@@ -264,7 +265,7 @@ BOOST_AUTO_TEST_CASE(a_file_that_cannot_be_read_is_named) {
 }
 
 BOOST_AUTO_TEST_CASE(the_hanging_net_is_the_papers) {
-  const std::filesystem::path root(SPRINGSTAB_SOURCE_DIR);
+  const std::filesystem::path root(springstab::test::source_folder());
   const SceneDescription scene = read_scene_file((root / "experiments/scenes/hanging_net_64.json").string());
   const Grid& grid = std::get<Grid>(scene.geometry);
   BOOST_TEST((grid.rows == 64 && grid.columns == 64 && grid.spacing == 0.025));

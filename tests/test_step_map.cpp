@@ -8,6 +8,7 @@
 #include "analysis/structure_limits.h"
 #include "solvers/linear/matrix_system.h"
 #include "tests/command.h"
+#include "tests/places.h"
 #include "tests/shared_data.h"
 
 BOOST_AUTO_TEST_SUITE(step_map)
@@ -108,7 +109,7 @@ for line in sys.stdin:
 
 // The examples, in three languages: n pendulums of 10 1/s², joined by 400 1/s², between walls.
 BOOST_FIXTURE_TEST_CASE(the_examples_have_their_methods_limits, Command) {
-  const std::string probes = "'" SPRINGSTAB_SOURCE_DIR "/experiments/probes/";
+  const std::string probes = "'" + springstab::test::source_folder() + "/experiments/probes/";
   const auto has = [&](const std::string& line, const std::string& what) {
     if (shell(line + " >&2").status == 0) return true;
     BOOST_TEST_MESSAGE("skipped, for there is no " << what);
@@ -142,10 +143,9 @@ BOOST_FIXTURE_TEST_CASE(the_engines_thresholds_are_found, Command) {
   }
   const auto measured = nlohmann::json::parse(test::content_of(*chain))["largest_stable_step"];
   const auto probed = [&](const std::string& claims, const std::string& words) {
-    const Outcome found =
-        (*this)("probe --json --size 9 --timeout 60 " + claims +
-                " -- node '" SPRINGSTAB_SOURCE_DIR "/experiments/probes/mujoco_chain.mjs' '" +
-                chain->string() + "' " + words);
+    const Outcome found = (*this)("probe --json --size 9 --timeout 60 " + claims + " -- node '" +
+                                  springstab::test::source_folder() +
+                                  "/experiments/probes/mujoco_chain.mjs' '" + chain->string() + "' " + words);
     BOOST_REQUIRE_MESSAGE(found.status == 0, found.err);
     return found.json();
   };

@@ -1,7 +1,8 @@
 # Error against cost, a row of two panels per contest: CPU seconds, and passes over all springs or blocks.
-# Needs: type ('svg' or 'png'), output_file, footer, panels, repetitions, designed, series and for each
-# series name_i; for each contest data_i, title_i, floor_i (100 times the reference's own error), and for the orders
-# 1 and 4 order<p>_i (0 or 1), order<p>_x_i, order<p>_n_i, order<p>_y_i: a point that the line of that order passes.
+# Needs: type ('svg' or 'png'), output_file, footer, panels, repetitions, designed, keys and for each of them key_j,
+# the names of all; for each contest data_i, title_i, series_i and for each of these name_i_j, floor_i (100 times the
+# reference's own error), and for the orders 1 and 4 order<p>_i (0 or 1), order<p>_x_i, order<p>_n_i, order<p>_y_i: a
+# point that the line of that order passes.
 # Reads data_i: blocks of seconds,least,most,error,equivalents,at_limit,outcome (0 finished, 1 diverged, 2 timed out).
 
 height = 425 * panels + 185
@@ -17,26 +18,27 @@ set encoding utf8
 
 # Okabe and Ito's colours, and a point of its own for each; implicit Euler's three tolerances are told apart by both.
 has(name, part) = strstrt(name, part) > 0
-colour(name) = has(name, 'SDIRK2') ? 0xaa3377 : has(name, 'BDF2') ? 0x661100 : \
+colour(name) = has(name, 'SDIRK2') ? 0xaa3377 : has(name, 'BDF2') ? 0x661100 : has(name, 'DIRK') ? 0xcc6677 : has(name, 'msbdf') ? 0x88a0dd : \
     has(name, 'linearized explicit') ? 0xe69f00 : has(name, 'linearized Runge') ? 0x56b4e9 : \
     has(name, 'explicit Euler') ? 0xd55e00 : has(name, 'symplectic') ? 0x009e73 : \
     has(name, 'CG 0.01') ? 0x882255 : has(name, 'CG 1e-08') ? 0x332288 : has(name, 'implicit') ? 0x000000 : \
     has(name, 'Runge-Kutta 4') ? 0x0072b2 : has(name, 'ARKODE') ? 0x7a5195 : has(name, 'CVODE') ? 0x8c564b : \
-    has(name, 'odeint') ? 0x999933 : has(name, 'GSL') ? 0x777777 : 0xcc79a7
-point(name) = has(name, 'SDIRK2') ? 3 : has(name, 'BDF2') ? 1 : has(name, 'linearized explicit') ? 4 : has(name, 'linearized Runge') ? 6 : has(name, 'explicit Euler') ? 5 : \
+    has(name, 'odeint') ? 0x999933 : has(name, 'bsimp') ? 0x117733 : has(name, 'GSL') ? 0x777777 : 0xcc79a7
+point(name) = has(name, 'SDIRK2') ? 3 : has(name, 'BDF2') ? 1 : has(name, 'DIRK') ? 9 : has(name, 'msbdf') ? 6 : has(name, 'bsimp') ? 4 : has(name, 'linearized explicit') ? 4 : has(name, 'linearized Runge') ? 6 : has(name, 'explicit Euler') ? 5 : \
     has(name, 'symplectic') ? 13 : has(name, 'CG 0.01') ? 11 : has(name, 'CG 1e-08') ? 15 : has(name, 'implicit') ? 2 : \
     has(name, 'Runge-Kutta 4') ? 7 : has(name, 'ARKODE') ? 8 : has(name, 'CVODE') ? 10 : has(name, 'odeint') ? 12 : \
     has(name, 'GSL') ? 14 : 9
 library(name) = has(name, 'ARKODE') || has(name, 'CVODE') || has(name, 'odeint') || has(name, 'GSL')
 dash(name) = library(name) ? 2 : 1
-name(i) = value(sprintf('name_%d', i))
+key_name(j) = value(sprintf('key_%d', j))
+name(j) = value(sprintf('name_%d_%d', row, j))
 # By the number of a block, from 0.
 colour_of(block) = colour(name(int(block) + 1))
 point_of(block) = point(name(int(block) + 1))
 library_of(block) = library(name(int(block) + 1))
 libraries = 0
-do for [i = 1:series] {
-    libraries = libraries || library(name(i))
+do for [j = 1:keys] {
+    libraries = libraries || library(key_name(j))
 }
 of(what, i) = value(sprintf('%s_%d', what, i))
 
@@ -89,8 +91,8 @@ do for [row = 1:panels] {
         set yrange [*:*]
         least = 1e300
         most = 0
-        do for [i = 1:series] {
-            stats data index i - 1 using c nooutput
+        do for [j = 1:of('series', row)] {
+            stats data index j - 1 using c nooutput
             least = STATS_min < least ? STATS_min : least
             most = STATS_max > most ? STATS_max : most
         }
@@ -113,8 +115,8 @@ do for [row = 1:panels] {
                  lc rgb variable notitle, \
              for [k = 0:1] order = 1 + 3 * k, in_reach(order, x) with lines lw 4 dt 3 lc rgb '#bbbbbb' notitle, \
              of('floor', row) with lines lw 1 dt 3 lc rgb '#777777' notitle, \
-             for [i = 1:series] keyentry with linespoints pt point(name(i)) ps 1 lw (library(name(i)) ? 1 : 1.6) \
-                 dt dash(name(i)) lc rgb colour(name(i)) title name(i), \
+             for [j = 1:keys] keyentry with linespoints pt point(key_name(j)) ps 1 \
+                 lw (library(key_name(j)) ? 1 : 1.6) dt dash(key_name(j)) lc rgb colour(key_name(j)) title key_name(j), \
              for [k = 1:ordered] keyentry with lines lw 4 dt 3 lc rgb '#bbbbbb' title 'slopes of order 1 and 4'
         unset label 1
         unset label 2

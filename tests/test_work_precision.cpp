@@ -138,7 +138,11 @@ BOOST_AUTO_TEST_CASE(integration_agrees_with_the_closed_form_to_its_tolerance) {
   SpringChain chain = uneven_chain();
   const State<Vector> start{random_vector(5, 1), random_vector(5, 2)};
   const LinearMotion motion(chain.matrices(), 0.3, 0.02, start);
-  for (AdaptiveMethod method : {AdaptiveMethod::rk8pd, AdaptiveMethod::rkf45}) {
+  // A step's error is within the tolerance; more of them add up in methods of low order.
+  for (const auto& [method, steps_add] : {std::pair{AdaptiveMethod::rk8pd, 100},
+                                          {AdaptiveMethod::rkf45, 100},
+                                          {AdaptiveMethod::bsimp, 100},
+                                          {AdaptiveMethod::msbdf, 1000}}) {
     double before = 1;
     for (double eps : {1e-6, 1e-9}) {
       const AdaptiveResult result =
@@ -146,9 +150,9 @@ BOOST_AUTO_TEST_CASE(integration_agrees_with_the_closed_form_to_its_tolerance) {
       BOOST_REQUIRE(result.finished);
       BOOST_REQUIRE(result.at.size() == 2u);
       const double off = std::max(gap(result.at[0], motion.at(0.5)), gap(result.at[1], motion.at(2)));
-      BOOST_TEST(off < 100 * eps);
+      BOOST_TEST(off < steps_add * eps);
       BOOST_TEST(off > 0);
-      BOOST_TEST(off < before / 10);
+      BOOST_TEST(off < std::max(before / 10, 10 * eps));  // extrapolation is better than asked
       before = off;
     }
   }

@@ -11,6 +11,8 @@ namespace springstab {
 enum class AdaptiveMethod {
   rk8pd,  // Prince and Dormand's Runge-Kutta pair of orders 8 and 9
   rkf45,  // Fehlberg's of orders 4 and 5, the library's general-purpose one
+  bsimp,  // Bader and Deuflhard's extrapolated semi-implicit midpoint rule, for stiff problems
+  msbdf,  // backward differentiation of orders 1 to 5, for stiff problems
 };
 
 struct AdaptiveOptions {
@@ -28,7 +30,8 @@ struct AdaptiveResult {
   std::vector<State<Vector>> at;  // at the times that were asked for, as far as it came
 };
 
-/// Integrates x'' = acceleration(x, v) from `start` at time 0 to the ascending `times` [s].
+/// Integrates x'' = acceleration(x, v) from `start` at time 0 to the ascending `times` [s]. The two for stiff
+/// problems hold dense matrices of 2n rows, and take their Jacobians by differences: 2n force evaluations each.
 AdaptiveResult integrate_adaptively(System& system, const State<Vector>& start,
                                     const std::vector<double>& times, const AdaptiveOptions& options);
 

@@ -67,6 +67,22 @@ std::string settings_of(const ContestResult& result, const std::string& data, st
                      run ? static_cast<double>(run->equivalents()) : 1, order, panel,
                      run ? run->errors->trajectory : 1);
   }
+  settings += text("series_%zu=%zu; ", panel, result.series.size());
+  for (std::size_t j = 0; j < result.series.size(); ++j)
+    settings +=
+        text("name_%zu_%zu=", panel, j + 1) + gnuplot_literal(result.series[j].contestant.name) + "; ";
+  return settings;
+}
+
+// Each name once: not every library solves every problem.
+std::string keys(const std::vector<ContestResult>& results) {
+  std::vector<std::string> names;
+  for (const ContestResult& result : results)
+    for (const ContestSeries& s : result.series)
+      if (std::ranges::find(names, s.contestant.name) == names.end()) names.push_back(s.contestant.name);
+  std::string settings = text("keys=%zu; ", names.size());
+  for (std::size_t j = 0; j < names.size(); ++j)
+    settings += text("key_%zu=", j + 1) + gnuplot_literal(names[j]) + "; ";
   return settings;
 }
 
@@ -115,10 +131,7 @@ std::vector<std::string> write_contests(const std::vector<ContestResult>& result
     written.insert(written.end(), {part + ".csv", part + "_points.csv"});
     settings += settings_of(results[i], part + "_points.csv", i + 1);
   }
-  const std::vector<ContestSeries>& series = results.front().series;
-  settings += text("series=%zu; ", series.size());
-  for (std::size_t i = 0; i < series.size(); ++i)
-    settings += text("name_%zu=", i + 1) + gnuplot_literal(series[i].contestant.name) + "; ";
+  settings += keys(results);
   const std::vector<std::string> pictures = draw(plots + "/work_precision.gp", settings, files.picture);
   written.insert(written.end(), pictures.begin(), pictures.end());
   return written;

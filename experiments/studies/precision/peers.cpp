@@ -8,8 +8,10 @@
 namespace springstab {
 namespace {
 
-constexpr long clock_interval = 16;  // force evaluations between looks at the clock
+constexpr long clock_interval = 16;                // force evaluations between looks at the clock
+constexpr Eigen::Index most_dense_unknowns = 400;  // GSL's elimination of 800 rows takes a third of a second
 
+template <AdaptiveMethod method>
 Attempt attempt_gsl(Problem& problem, double tolerance, double time_limit) {
   const Scales scales = scales_of(problem);
   CountingSystem counted(problem.system());
@@ -17,7 +19,7 @@ Attempt attempt_gsl(Problem& problem, double tolerance, double time_limit) {
   bool in_time = true;
   AdaptiveResult result =
       integrate_adaptively(counted, problem.start(), sample_times(problem),
-                           {.method = AdaptiveMethod::rkf45,
+                           {.method = method,
                             .tolerance = tolerance,
                             .place_scale = scales.place,
                             .velocity_scale = scales.velocity,
@@ -95,7 +97,11 @@ Contestant library_contestant(const std::string& name, Problem& problem,
 }
 
 std::vector<Contestant> peer_contestants(Problem& problem) {
-  std::vector<Contestant> peers{library_contestant("GSL rkf45", problem, attempt_gsl)};
+  std::vector<Contestant> peers{library_contestant("GSL rkf45", problem, attempt_gsl<AdaptiveMethod::rkf45>)};
+  if (problem.start().x.size() <= most_dense_unknowns) {
+    peers.push_back(library_contestant("GSL bsimp", problem, attempt_gsl<AdaptiveMethod::bsimp>));
+    peers.push_back(library_contestant("GSL msbdf", problem, attempt_gsl<AdaptiveMethod::msbdf>));
+  }
 #ifdef SPRINGSTAB_ODEINT
   peers.push_back(odeint_contestant(problem));
 #endif

@@ -8,9 +8,9 @@
 
 namespace springstab {
 
-/// GSL's always, Boost.odeint's and SUNDIALS' where they were found when this was built. Forces are the
-/// problem's own and counted alike. Tolerances are relative, and absolute after multiplication with the
-/// problem's scales.
+/// GSL's always, but its implicit ones, whose matrices are dense, for at most 400 unknowns; Boost.odeint's
+/// and SUNDIALS' where they were found when this was built. Forces are the problem's own and counted alike.
+/// Tolerances are relative, and absolute after multiplication with the problem's scales.
 std::vector<Contestant> peer_contestants(Problem& problem);
 
 /// Those that were not found, for a message; empty if none is missing.

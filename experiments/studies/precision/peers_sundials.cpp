@@ -1,6 +1,8 @@
-// SUNDIALS: CVODE's BDF with GMRES, without a preconditioner and with Jacobian products by differences of
-// forces; ARKODE's explicit Runge-Kutta pair of order 4. Default settings but for the tolerances, a basis of
-// 20 vectors for GMRES, and no limit to the number of steps.
+// SUNDIALS: CVODE's BDF and ARKODE's diagonally implicit Runge-Kutta pair of order 4, both with GMRES,
+// without a preconditioner and with Jacobian products by differences of forces; ARKODE's explicit pair of
+// order 4. Default settings but for the tolerances, a basis of 20 vectors for GMRES, and no limit to the
+// number of steps.
+#include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -92,6 +94,30 @@ Attempt attempt_cvode(Problem& problem, double tolerance, double time_limit) {
   return equations.finish(good, steps);
 }
 
+Attempt attempt_dirk(Problem& problem, double tolerance, double time_limit) {
+  FirstOrderProblem equations(problem, time_limit);
+  const Context context;
+  Vector y = equations.start(), absolute = absolute_tolerances(problem, tolerance);
+  const VectorView state = view(y, context), tolerances = view(absolute, context);
+  void* memory = ARKStepCreate(nullptr, derivative, 0, state.get(), context);
+  SUNLinearSolver solver = SUNLinSol_SPGMR(state.get(), SUN_PREC_NONE, krylov_basis, context);
+  bool good = ARKStepSetErrFile(memory, nullptr) == ARK_SUCCESS &&
+              ARKStepSVtolerances(memory, tolerance, tolerances.get()) == ARK_SUCCESS &&
+              ARKStepSetUserData(memory, &equations) == ARK_SUCCESS &&
+              ARKStepSetMaxNumSteps(memory, -1) == ARK_SUCCESS &&
+              ARKStepSetStopTime(memory, problem.duration()) == ARK_SUCCESS &&
+              ARKStepSetLinearSolver(memory, solver, nullptr) == ARK_SUCCESS;
+  good = good && through_samples(problem, equations, y, [&](double t) {
+           realtype reached = 0;
+           return ARKStepEvolve(memory, t, state.get(), &reached, ARK_NORMAL) >= 0;
+         });
+  long steps = 0;
+  ARKStepGetNumSteps(memory, &steps);
+  ARKStepFree(&memory);
+  SUNLinSolFree(solver);
+  return equations.finish(good, steps);
+}
+
 Attempt attempt_arkode(Problem& problem, double tolerance, double time_limit) {
   FirstOrderProblem equations(problem, time_limit);
   const Context context;
@@ -117,6 +143,7 @@ Attempt attempt_arkode(Problem& problem, double tolerance, double time_limit) {
 
 std::vector<Contestant> sundials_contestants(Problem& problem) {
   return {library_contestant("CVODE BDF GMRES", problem, attempt_cvode),
+          library_contestant("ARKODE DIRK GMRES", problem, attempt_dirk),
           library_contestant("ARKODE explicit", problem, attempt_arkode)};
 }
 

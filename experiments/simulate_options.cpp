@@ -77,7 +77,9 @@ Subcommand simulate_command() {
                .with_default(),
            Option("--explain", &o->explain,
                   "first say what the scene has, what each part costs a step, and what was left out"),
-           Option("--output", &o->output, "folder for the frames (matrices: trajectory.csv)").shown_as("DIR"),
+           Option("--output", &o->output,
+                  "folder for the frames and their energies, energy.csv (matrices: trajectory.csv has both)")
+               .shown_as("DIR"),
            Option("--format", &o->format, "of the frames: obj or vtk").one_of({"obj", "vtk"}).with_default(),
            Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
            Option("--solver", &o->solver,

@@ -17,13 +17,6 @@ void check_for_interrupt() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
-Input::Input(const InputOptions& options) : subject_(std::make_unique<Subject>(options, true)) {}
-
-Input::Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping,
-             const SparseMatrix& implicit_damping)
-    : matrices_(std::make_unique<Model>(std::make_unique<MatrixSystem>(
-          prepare_nonsymmetric(stiffness, mass, damping, {}, implicit_damping)))) {}
-
 }  // namespace springstab
 
 PYBIND11_MODULE(_core, module) {
@@ -37,11 +30,12 @@ PYBIND11_MODULE(_core, module) {
     }
   });
 
-  py::class_<Input>(module, "Input")
+  py::class_<Subject>(module, "Input")
       .def(py::init([](const SparseMatrix& k, const std::optional<SparseMatrix>& m,
                        const std::optional<SparseMatrix>& d, const std::optional<SparseMatrix>& implicit) {
-             return std::make_unique<Input>(k, m.value_or(SparseMatrix()), d.value_or(SparseMatrix()),
-                                            implicit.value_or(SparseMatrix()));
+             const auto or_none = [](const auto& given) { return given.value_or(SparseMatrix()); };
+             return std::make_unique<Subject>(k, or_none(m), or_none(d), or_none(implicit), RayleighDamping(),
+                                              true);
            }),
            py::arg("stiffness"), py::arg("mass") = py::none(), py::arg("damping") = py::none(),
            py::arg("implicit_damping") = py::none())
@@ -56,14 +50,13 @@ PYBIND11_MODULE(_core, module) {
              options.pin = pin;
              options.scale = scale;
              options.diagonals = diagonals;
-             return std::make_unique<Input>(options);
+             return std::make_unique<Subject>(options, true);
            }),
            py::kw_only(), py::arg("file"), py::arg("grid"), py::arg("spacing"), py::arg("material"),
            py::arg("pin"), py::arg("scale"), py::arg("diagonals"))
-      .def_property_readonly("size", [](Input& input) { return input.model().system().size(); })
-      .def_property_readonly("is_scene", [](const Input& input) { return input.scene() != nullptr; })
-      .def_property_readonly(
-          "faces", [](const Input& input) { return input.scene() ? input.scene()->faces() : Faces(); });
+      .def_property_readonly("size", [](Subject& input) { return input.system().size(); })
+      .def_property_readonly("is_scene", [](const Subject& input) { return input.scene() != nullptr; })
+      .def_property_readonly("faces", &Subject::faces);
   bind_region(module);  // first: the others name its Method
   bind_diagnose(module);
   bind_limits(module);

@@ -15,22 +15,6 @@ namespace springstab {
 
 namespace py = pybind11;
 
-/// What limits and simulations are asked of: an input as the command takes it, or matrices.
-class Input {
- public:
-  explicit Input(const InputOptions& options);
-  Input(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping,
-        const SparseMatrix& implicit_damping);
-
-  Model& model() { return subject_ ? *subject_ : *matrices_; }
-  /// Null where it has no vertices.
-  const Subject* scene() const { return subject_ && subject_->scene() ? subject_.get() : nullptr; }
-
- private:
-  std::unique_ptr<Subject> subject_;
-  std::unique_ptr<Model> matrices_;
-};
-
 /// Raises KeyboardInterrupt where Ctrl-C was typed. To be called without the interpreter's lock.
 void check_for_interrupt();
 

@@ -43,13 +43,13 @@ RunFrames frames_of(const FrameArray& array) {
 void bind_diagnose(py::module_& module) {
   module.def(
       "diagnose",
-      [](const FrameArray& array, double h, int every, Input* input, const std::vector<Method>& methods) {
+      [](const FrameArray& array, double h, int every, Subject* input, const std::vector<Method>& methods) {
         const RunFrames frames = frames_of(array);
         Diagnosis found;
         {
           const py::gil_scoped_release others_run;
-          found = diagnose(frames, {.h = h, .every = every}, input ? &input->model() : nullptr,
-                           input ? input->scene() : nullptr, "frames", methods);
+          found = diagnose(frames, {.h = h, .every = every}, input, input && input->scene() ? input : nullptr,
+                           "frames", methods);
         }
         py::dict d;
         d["status"] = name(found.status);

@@ -15,7 +15,7 @@ struct Frames {
   std::vector<double> times{}, positions{};
   py::ssize_t rows = 0, columns = 0;  // of one frame; columns 0 for a vector
 
-  void record(Input& input, double t, const Vector& x) {
+  void record(const Subject& input, double t, const Vector& x) {
     while (!times.empty() && times.back() >= t) {  // a divergence was undone
       times.pop_back();
       positions.resize(times.size() * rows * std::max<py::ssize_t>(columns, 1));
@@ -23,7 +23,7 @@ struct Frames {
     if (!(interval > 0) || t < interval * (1 - 1e-12) * static_cast<double>(times.size())) return;
     times.push_back(t);
     if (input.scene()) {
-      const std::vector<Eigen::Vector3d> vertices = input.scene()->vertices(x);
+      const std::vector<Eigen::Vector3d> vertices = input.vertices(x);
       rows = py::ssize_t(vertices.size()), columns = 3;
       for (const Eigen::Vector3d& p : vertices) positions.insert(positions.end(), p.data(), p.data() + 3);
     } else {
@@ -56,9 +56,8 @@ State<Vector> start_of(Model& model, std::uint64_t seed, const std::optional<Vec
   return state;
 }
 
-py::dict simulate(Input& input, const StepOptions& options, bool designed, int newton, int frames,
+py::dict simulate(Subject& model, const StepOptions& options, bool designed, int newton, int frames,
                   const Callback& callback, const std::optional<Vector>& x, const std::optional<Vector>& v) {
-  Model& model = input.model();
   if (designed) {
     expect_designable(model);
     model.design_damping();
@@ -79,15 +78,15 @@ py::dict simulate(Input& input, const StepOptions& options, bool designed, int n
     plan = *first;
     const auto observe = [&](const RunSoFar& so_far, const State<Vector>& now) {
       check_for_interrupt();
-      kept.record(input, so_far.time, now.x);
+      kept.record(model, so_far.time, now.x);
       if (!callback) return true;
       const py::gil_scoped_acquire lock;
       stopped = callback(so_far.time, now.x, now.v).is(py::bool_(false));
       return !stopped;
     };
-    const auto contact = input.scene() ? input.scene()->contact_filter() : nullptr;
+    const auto contact = model.contact_filter();
     EnergyWatch watch = chooser.watch(start);
-    if (contact) watch = with_obstacles(watch, *input.scene()->contact());
+    if (contact) watch = with_obstacles(watch, *model.contact());
     result = springstab::simulate(model.system(), *stepper, plan, watch, state, observe, chooser.policy(),
                                   contact.get());
   }
@@ -113,7 +112,7 @@ py::dict simulate(Input& input, const StepOptions& options, bool designed, int n
 void bind_simulate(py::module_& module) {
   module.def(
       "simulate",
-      [](Input& input, const Method& method, double duration, std::optional<double> step,
+      [](Subject& input, const Method& method, double duration, std::optional<double> step,
          std::optional<double> max_step, double safety, double relinearize, bool designed, int newton,
          std::uint64_t seed, int frames, const Callback& callback, const std::optional<Vector>& x,
          const std::optional<Vector>& v) {

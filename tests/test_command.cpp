@@ -180,7 +180,8 @@ BOOST_AUTO_TEST_CASE(a_run_ends_at_the_duration_and_leaves_its_frames) {
   BOOST_TEST(report["frames"] == 5);
   for (int i = 0; i < 5; ++i)
     BOOST_TEST(fs::exists(folder() / "frames" / ("frame_0000" + std::to_string(i) + ".obj")));
-  BOOST_TEST(std::distance(fs::directory_iterator(folder() / "frames"), fs::directory_iterator()) == 5);
+  BOOST_TEST(std::distance(fs::directory_iterator(folder() / "frames"), fs::directory_iterator()) ==
+             5 + 1);  // and energy.csv
 
   std::ifstream last(folder() / "frames" / "frame_00004.obj");
   std::string word;
@@ -189,6 +190,84 @@ BOOST_AUTO_TEST_CASE(a_run_ends_at_the_duration_and_leaves_its_frames) {
   const Json position = report["last_particle"]["position"];
   BOOST_TEST((close(position[0], x, 1e-15) && close(position[1], y, 1e-15) && close(position[2], z, 1e-15)));
   BOOST_TEST((last >> word && word == "f"));
+}
+
+// Two squares that share an edge, in two groups of one object, with a material and a seam in their texture.
+const std::string labelled_strip =
+    "mtllib fabrics.mtl\no Strip\nv 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nv 0 0 2\nv 1 0 2\n"
+    "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 0.5 0.25\nvn 0 1 0\n"
+    "g collar seam\nusemtl silk\ns 1\nf 1/1/1 2/2/1 4/4/1 3/3/1\ng hem\nf 3/5/1 -3/4/1 6/2/1 5/1/1\n";
+
+BOOST_AUTO_TEST_CASE(frames_keep_what_the_obj_file_says_of_its_faces) {
+  fs::create_directory(folder() / "meshes");
+  file("meshes/strip.obj", labelled_strip);
+  const Outcome run = (*this)(
+      "simulate meshes/strip.obj --pin group:collar --method rk4 --duration 0.1 --output frames --frames 1");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  const std::string frame = content_of(folder() / "frames" / "frame_00000.obj");
+  BOOST_TEST(frame ==
+             "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nv 0 0 2\nv 1 0 2\n"
+             "vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\nvt 0.5 0.25\n"
+             "mtllib ../meshes/fabrics.mtl\no Strip\ng collar seam\nusemtl silk\ns 1\n"
+             "f 1/1 2/2 4/4 3/3\ng hem\nf 3/5 4/4 6/2 5/1\n");
+}
+
+BOOST_AUTO_TEST_CASE(pins_are_chosen_by_group_object_or_box) {
+  file("strip.obj", labelled_strip);
+  const auto unknowns = [&](const std::string& input) {
+    return (*this)("limits " + input + " --json").json()["degrees_of_freedom"].get<int>();
+  };
+  const std::pair<std::string, int> chosen[] = {{"group:collar", 6},        {"group:seam", 6},
+                                                {"group:hem", 6},           {"'box:0:0,:,:'", 9},
+                                                {"box:0.5:2,-1:1,1:3", 12}, {"'box::,:,1:1'", 12}};
+  for (const auto& [pin, left] : chosen)
+    BOOST_TEST_CONTEXT(pin) BOOST_TEST(unknowns("strip.obj --pin " + pin) == left);
+  BOOST_TEST(unknowns("strip.obj --scale 0.5 --pin box::,:,0.5:0.5") == 12);
+  BOOST_TEST(unknowns("--grid 5x4 --pin box:0.025:0.05,:,:0.025") == 3 * (20 - 4));
+  file("pins.json", R"({"geometry": {"mesh": "strip.obj"}, "pins": "group:hem"})");
+  BOOST_TEST(unknowns("pins.json") == 6);
+
+  const std::pair<std::string, std::string> refused[] = {
+      {"strip.obj --pin group:colar",
+       "--pin: no face is of the group 'colar', expected 'collar seam' or 'hem'"},
+      {"strip.obj --pin object:Stripe",
+       "--pin: no face is of the object 'Stripe', expected 'Strip' (did you mean 'Strip'?)"},
+      {"strip.obj --pin box:5:6,:,:",
+       "--pin: no particle rests in the box 5:6,-inf:inf,-inf:inf, expected one that meets the scene's "
+       "0:1,0:0,0:2 m"},
+      {"strip.obj --pin corners", "expected particle numbers, a group, an object or a box"},
+      {"--grid 5x4 --pin group:collar", "--pin: a grid has no groups and objects"},
+      {"strip.obj --pin box:1,2,3", "--pin: the box '1,2,3' is not one, expected three times lower:upper"}};
+  for (const auto& [input, message] : refused) {
+    const Outcome outcome = (*this)("limits " + input);
+    BOOST_TEST_CONTEXT(outcome.err) {
+      BOOST_TEST(outcome.status == 2);
+      BOOST_TEST(outcome.err.find(message) != std::string::npos);
+    }
+  }
+}
+
+BOOST_AUTO_TEST_CASE(energies_of_a_scene_stand_beside_its_frames) {
+  const Outcome run = (*this)(
+      "simulate --grid 5x4 --pin first-row --method symplectic-euler --duration 0.2 --output out --frames 20 "
+      "--json");
+  BOOST_REQUIRE_EQUAL(run.status, 0);
+  std::istringstream rows(content_of(folder() / "out" / "energy.csv"));
+  std::string names, row;
+  std::getline(rows, names);
+  BOOST_TEST(names == "t,kinetic_energy,potential_energy");
+  std::vector<std::array<double, 3>> all;
+  while (std::getline(rows, row)) {
+    std::array<double, 3> r{};
+    BOOST_REQUIRE(std::sscanf(row.c_str(), "%lf,%lf,%lf", &r[0], &r[1], &r[2]) == 3);
+    all.push_back(r);
+  }
+  BOOST_REQUIRE(all.size() == 21u);
+  const Json energy = run.json()["energy"];
+  BOOST_TEST(close(energy["initial"], all.front()[1] + all.front()[2], 1e-12));
+  BOOST_TEST(close(energy["final"], all.back()[1] + all.back()[2], 1e-12));
+  BOOST_TEST(close(all[20][0], 0.2, 1e-12));
+  BOOST_TEST(all[10][1] > 0);
 }
 
 // Whether the energy is below zero at the start is for the seed to say, whether motion grows is not.
@@ -360,7 +439,8 @@ BOOST_AUTO_TEST_CASE(a_motion_that_explodes_ends_with_status_4_and_its_last_good
         BOOST_TEST(text.find("inf") == std::string::npos);
         ++frames;
       }
-      BOOST_TEST(report["frames"] == frames);
+      BOOST_TEST(report["frames"] == frames - 1);  // and their energies, without those of what was undone
+      BOOST_TEST(lines(content_of(folder() / method / "energy.csv")) == frames);
     }
   }
 }

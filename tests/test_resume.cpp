@@ -230,7 +230,8 @@ BOOST_AUTO_TEST_CASE(a_killed_simulation_ends_as_if_it_had_not_been) {
     const Undisturbed undisturbed(path() / "left alone", arguments);
     const Json expected = untimed(undisturbed.report);
     BOOST_TEST(expected.at("status") == "done");
-    BOOST_TEST((undisturbed.files.size() == 101 || undisturbed.files.contains("trajectory.csv")));
+    const bool scene = undisturbed.files.contains("energy.csv");  // beside the frames
+    BOOST_TEST((scene ? undisturbed.files.size() == 102u : undisturbed.files.contains("trajectory.csv")));
     undone += expected.at("counts").at("rollbacks").get<long>();
     halved += expected.at("counts").at("halved_steps").get<long>();
     BOOST_TEST_MESSAGE(expected.at("method")

@@ -141,6 +141,18 @@ BOOST_AUTO_TEST_CASE(pins_are_words_indices_or_ranges) {
                           "x", "1x", "+1", "20000000", "0-99999999999999999999", "None"})
     expect_error([&] { parse_pins(bad, "--pin", 0); }, "--pin", "'" + std::string(bad) + "'");
   expect_error([] { parse_pins("frist-row", "scene.json", 7); }, "scene.json:7", "did you mean 'first-row'?");
+
+  const Pins group = parse_pins("group:left  collar ", "--pin", 0);
+  BOOST_TEST((group.kind == Pins::Kind::group && group.name == "left  collar"));
+  BOOST_TEST((kind("object:Sail") == Pins::Kind::object));
+  const Pins box = parse_pins("box:-1:0.5,:,2e-3:", "--pin", 0);
+  BOOST_TEST((box.kind == Pins::Kind::box));
+  BOOST_TEST((box.box.min() == Eigen::Vector3d(-1, -HUGE_VAL, 2e-3)));
+  BOOST_TEST((box.box.max() == Eigen::Vector3d(0.5, HUGE_VAL, HUGE_VAL)));
+  for (const char* bad :
+       {"box:", "box:0:1", "box:0:1,0:1", "box:0:1,0:1,0:1,0:1", "box:0:1,0:1,0:1,",
+        "box:1:0,:,:", "box:0,:,:", "box:0:1:2,:,:", "box:a:1,:,:", "box:nan:1,:,:", "group:", "object: "})
+    BOOST_TEST_CONTEXT(bad) BOOST_CHECK_THROW(parse_pins(bad, "--pin", 0), InputError);
 }
 
 BOOST_AUTO_TEST_CASE(a_suggestion_is_near_or_absent) {

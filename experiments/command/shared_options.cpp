@@ -95,7 +95,11 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
       Option("--bend", &input.numbers.bend,
              "stiffness against bending, of springs in N/m, of triangles in N·m")
           .shown_as("[N/m]"),
-      Option("--pin", &input.pin, "none, first-row, corners or particle numbers like 0,5-9").shown_as("SPEC"),
+      Option("--pin", &input.pin,
+             "none, first-row, corners, particle numbers like 0,5-9, group:NAME or object:NAME of an OBJ "
+             "file, or "
+             "box:x0:x1,y0:y1,z0:z1 [m]")
+          .shown_as("SPEC"),
       Option("--stiffness", &input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
           .shown_as("FILE"),
       Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),

@@ -20,7 +20,7 @@ SurfaceInput surface_input(Mesh original) {
   RepairedMesh mended = repaired(original);
   return {std::move(mended.mesh),
           {std::move(original.source), false, std::move(original.vertices), std::move(mended.repair),
-           std::move(original.notes)},
+           std::move(original.notes), std::move(original.attributes)},
           std::move(faces)};
 }
 

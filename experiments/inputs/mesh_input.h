@@ -23,6 +23,7 @@ struct MeshFile {
   std::vector<Eigen::Vector3d> vertices;  // [m]
   MeshRepair repair;
   std::vector<FileNote> notes;  // on what its reader left out
+  FaceAttributes attributes{};  // of the faces of an OBJ file
 
   // of a cloth of triangles:
   std::optional<RestShape> rest_shape{};

@@ -8,9 +8,10 @@
 
 namespace springstab {
 
-/// Ascending numbers of the pinned particles. Throws InputError for one that is not there.
+/// Ascending numbers of the pinned particles. Throws InputError for one that is not there, and for a group,
+/// an object or a box that has none.
 std::vector<int> pinned_particles(const Pins& pins, const Grid& grid);
-/// Of a mesh, whose pins name the file's vertices.
-std::vector<int> pinned_particles(const Pins& pins, const MeshFile& file);
+/// Of a mesh, whose pins name the file's vertices; `faces` are the file's.
+std::vector<int> pinned_particles(const Pins& pins, const MeshFile& file, const Faces& faces);
 
 }  // namespace springstab

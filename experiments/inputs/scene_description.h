@@ -2,7 +2,7 @@
 // plain data, with the defaults of the command-line contract, before anything is built.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,11 +24,13 @@ struct Range {
 
 /// Which particles are held fast.
 struct Pins {
-  enum class Kind { none, first_row, corners, indices };
+  enum class Kind { none, first_row, corners, indices, group, object, box };
   Kind kind = Kind::none;
   std::vector<Range> ranges;  // for Kind::indices, from 0, ascending, none overlaps another
   std::string source;         // where it was written, for messages ("--pin" or the scene file)
   long line = 0;
+  std::string name{};         // for Kind::group and Kind::object, of an OBJ file
+  Eigen::AlignedBox3d box{};  // for Kind::box: all that rests in it or on it [m]
 };
 
 /// Rayleigh damping D = d0 M + alpha K; no value means that alpha is to be designed with the step.
@@ -73,7 +75,8 @@ struct SceneDescription {
 /// The same particles by ascending ranges that are apart from each other.
 std::vector<Range> merged(std::vector<Range> ranges);
 
-/// "none", "first-row", "corners" or "0,5-9". Throws InputError(source, line, ...) for anything else.
+/// "none", "first-row", "corners", "0,5-9", "group:NAME", "object:NAME" or "box:x0:x1,y0:y1,z0:z1" [m], where
+/// a bound that is left out is infinite. Throws InputError(source, line, ...) for anything else.
 Pins parse_pins(const std::string& text, const std::string& source, long line);
 
 /// Whether the geometry is a file of tetrahedra (holds_tetrahedra of solvers/io/mesh_file.h).

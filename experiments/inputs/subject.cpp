@@ -200,19 +200,22 @@ void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
   };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix),
                      implicit = read(options.implicit_damping_matrix);
-  const Eigen::VectorXd weight = m.size() > 0
-                                     ? Eigen::VectorXd(m.cwiseAbs() * Eigen::VectorXd::Ones(m.cols()))
-                                     : Eigen::VectorXd::Ones(k.rows());
-  for (long i = 0; i < weight.size(); ++i)
-    if (weight[i] > 0) kept_.push_back(i);
   const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix, &options.implicit_damping_matrix})
     if (!file->empty()) files += ", " + *file;
-  Model::operator=(naming(files, [&] {
-    const auto& make = any_matrices ? prepare_nonsymmetric : prepare;
-    return Model(std::make_unique<MatrixSystem>(make(k, m, d, rayleigh, implicit)));
-  }));
+  *this = naming(files, [&] { return Subject(k, m, d, implicit, rayleigh, any_matrices); });
+}
+
+Subject::Subject(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping,
+                 const SparseMatrix& implicit_damping, const RayleighDamping& rayleigh, bool any_matrices)
+    : Model(std::make_unique<MatrixSystem>((any_matrices ? prepare_nonsymmetric : prepare)(
+          stiffness, mass, damping, rayleigh, implicit_damping))) {
+  const Eigen::VectorXd weight = mass.size() > 0
+                                     ? Eigen::VectorXd(mass.cwiseAbs() * Eigen::VectorXd::Ones(mass.cols()))
+                                     : Eigen::VectorXd::Ones(stiffness.rows());
+  for (long i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0) kept_.push_back(i);
 }
 
 Subject::Subject(const SceneDescription& description) { build_scene(description); }
@@ -232,7 +235,7 @@ void Subject::build_scene(const SceneDescription& description) {
   }
   const std::string& path = std::get<std::string>(description.geometry);
   const auto place_mesh = [&](const auto& cloth) {
-    place(cloth, description, pinned_particles(description.pins, *mesh_file_), path);
+    place(cloth, description, pinned_particles(description.pins, *mesh_file_, faces_), path);
   };
   AnyMesh mesh = read_mesh(path);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) {

@@ -46,6 +46,10 @@ class Subject : public Model {
   /// Matrices must be symmetric unless `any_matrices` (prepare_nonsymmetric).
   explicit Subject(const InputOptions& options, bool any_matrices = false);
   explicit Subject(const SceneDescription& description);
+  /// Matrices, of which an empty one is the identity (mass) or zero; `implicit_damping` as prepare() has it.
+  /// Throws std::invalid_argument.
+  Subject(const SparseMatrix& stiffness, const SparseMatrix& mass, const SparseMatrix& damping,
+          const SparseMatrix& implicit_damping, const RayleighDamping& rayleigh, bool any_matrices);
 
   /// Faces for pictures, those of the mesh file (of a solid its surface) or of a grid's cells: numbers of
   /// vertices(); none for matrices.

@@ -8,12 +8,32 @@
 namespace springstab {
 namespace {
 
+// A library of materials is named relative to the file that names it.
+std::string from_folder(const std::string& words, const std::string& source, const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path library(words);
+  if (library.is_absolute()) return words;
+  return fs::proximate(fs::path(source).parent_path() / library, folder).generic_string();
+}
+
 void write_obj(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
-               const std::vector<std::vector<int>>& faces) {
+               const std::vector<std::vector<int>>& faces, const FaceAttributes& attributes,
+               const std::string& source, const std::string& folder) {
   for (const Eigen::Vector3d& p : positions) out << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-  for (const std::vector<int>& face : faces) {
+  for (const Eigen::Vector2d& t : attributes.textures) out << "vt " << t.x() << ' ' << t.y() << '\n';
+  auto statement = attributes.statements.begin();
+  auto texture = attributes.corner_textures.begin();
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    for (; statement != attributes.statements.end() && statement->face <= static_cast<int>(f); ++statement) {
+      const bool library = statement->keyword == "mtllib";
+      out << statement->keyword << ' '
+          << (library ? from_folder(statement->words, source, folder) : statement->words) << '\n';
+    }
     out << 'f';
-    for (int i : face) out << ' ' << i + 1;
+    for (int i : faces[f]) {
+      out << ' ' << i + 1;
+      if (texture != attributes.corner_textures.end() && *texture++ >= 0) out << '/' << texture[-1] + 1;
+    }
     out << '\n';
   }
 }
@@ -46,9 +66,13 @@ void expect_frame(const std::string& folder, const std::string& format, int fram
 }
 
 void write_frame(const std::string& folder, const std::string& format, int frame,
-                 const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces) {
+                 const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces,
+                 const FaceAttributes& attributes, const std::string& source) {
   OutputFile file(frame_path(folder, format, frame));
-  (format == "vtk" ? write_vtk : write_obj)(file.stream(), positions, faces);
+  if (format == "vtk")
+    write_vtk(file.stream(), positions, faces);
+  else
+    write_obj(file.stream(), positions, faces, attributes, source, folder);
   file.commit();
 }
 

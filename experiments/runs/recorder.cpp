@@ -33,7 +33,8 @@ Fnv1a hash_of_file(const std::string& path) {
 Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json& kept)
     : subject_(subject), options_(options) {
   if (!kept.is_null()) {
-    for (const Json& frame : kept.at("frames")) frames_.push_back({frame[0], frame[1], frame[2]});
+    for (const Json& frame : kept.at("frames"))
+      frames_.push_back({frame[0], frame[1], frame[2], Fnv1a(frame[3].get<std::uint64_t>())});
     due_ = kept.at("due");
     most_ = kept.at("most");
     for (int frame = 0; subject.scene() && frame < written(); ++frame)
@@ -42,8 +43,8 @@ Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json&
     for (const Json& moment : kept.value("last", Json::array()))
       last_.push_back({moment[0], {vector_of(moment[1]), vector_of(moment[2])}});
   }
-  if (options.output.empty() || subject.scene()) return;
-  const std::string path = options.output + "/trajectory.csv";
+  if (options.output.empty()) return;
+  const std::string path = options.output + (subject.scene() ? "/energy.csv" : "/trajectory.csv");
   csv_bytes_ = kept.is_null() ? 0 : kept.at("csv_bytes").get<std::uintmax_t>();
   csv_.emplace(path, csv_bytes_);
   if (!kept.is_null()) {
@@ -53,7 +54,8 @@ Recorder::Recorder(Subject& subject, const SimulateOptions& options, const Json&
     return;
   }
   std::string names = "t,kinetic_energy,potential_energy";
-  for (Eigen::Index i = 0; i < subject.system().size(); ++i) names += ",x" + std::to_string(i + 1);
+  for (Eigen::Index i = 0; !subject.scene() && i < subject.system().size(); ++i)
+    names += ",x" + std::to_string(i + 1);
   write_row(names);
 }
 
@@ -67,14 +69,20 @@ void Recorder::write_row(const std::string& row) {
 void Recorder::record(double t, const State<Vector>& state) {
   if (options_.output.empty()) return;
   if (keeps_last()) remember(t, state);
-  while (!frames_.empty() && t < frames_.back().t) {  // a divergence was undone
-    due_ = frames_.back().due;
-    frames_.pop_back();
-    on_disk_ = std::min(on_disk_, written());
-  }
+  while (!frames_.empty() && t < frames_.back().t) take_back_last();  // a divergence was undone
   if (t < next_time()) return;
   write(t, state);
   while (next_time() <= t && due_ <= options_.frames) ++due_;
+}
+
+void Recorder::take_back_last() {
+  const Frame& last = frames_.back();
+  csv_->cut(last.begin);
+  csv_bytes_ = last.begin;
+  csv_hash_ = last.before;
+  due_ = last.due;
+  frames_.pop_back();
+  on_disk_ = std::min(on_disk_, written());
 }
 
 void Recorder::remember(double t, const State<Vector>& state) {
@@ -92,33 +100,30 @@ void Recorder::remember(double t, const State<Vector>& state) {
 
 void Recorder::record_last() {
   if (last_.empty()) return;
-  std::uintmax_t end = csv_bytes_;
-  for (; !frames_.empty() && frames_.back().t >= last_.front().t; frames_.pop_back())
-    end = frames_.back().begin;
-  if (csv_) csv_->cut(end);
+  while (!frames_.empty() && frames_.back().t >= last_.front().t) take_back_last();
   for (const auto& [t, state] : last_) write(t, state);
   last_steps_ = static_cast<int>(last_.size());
 }
 
 void Recorder::write(double t, const State<Vector>& state) {
-  const std::uintmax_t begin = csv_bytes_;
+  frames_.push_back({t, due_, csv_bytes_, csv_hash_});
   if (subject_.scene()) {
     wait_for_frame();
-    auto save = [this, frame = written(), positions = subject_.vertices(state.x)] {
-      write_frame(options_.output, options_.format, frame, positions, subject_.faces());
+    auto save = [this, frame = written() - 1, positions = subject_.vertices(state.x)] {
+      const std::optional<MeshFile>& file = subject_.mesh_file();
+      write_frame(options_.output, options_.format, frame, positions, subject_.faces(),
+                  file ? file->attributes : FaceAttributes(), file ? file->path : std::string());
     };
     if (loop_threads() > 1) {
       writing_ = std::async(std::launch::async, std::move(save));
     } else {
       save();
     }
-  } else {
-    std::string row = text("%.17g,%.17g,%.17g", t, subject_.system().kinetic_energy(state.v),
-                           subject_.system().potential_energy(state.x));
-    for (double x : state.x) row += text(",%.17g", x);
-    write_row(row);
   }
-  frames_.push_back({t, due_, begin});
+  std::string row = text("%.17g,%.17g,%.17g", t, subject_.system().kinetic_energy(state.v),
+                         subject_.system().potential_energy(state.x));
+  for (Eigen::Index i = 0; !subject_.scene() && i < state.x.size(); ++i) row += text(",%.17g", state.x[i]);
+  write_row(row);
   most_ = std::max(most_, written());
 }
 
@@ -134,7 +139,8 @@ void Recorder::flush() {
 Json Recorder::kept() {
   wait_for_frame();
   Json frames = Json::array();
-  for (const Frame& frame : frames_) frames.push_back({frame.t, frame.due, frame.begin});
+  for (const Frame& frame : frames_)
+    frames.push_back({frame.t, frame.due, frame.begin, frame.before.value()});
   Json kept{{"frames", frames}, {"due", due_}, {"most", most_}};
   if (csv_) kept.update({{"csv_bytes", csv_->keep_on_disk()}, {"csv_hash", csv_hash_.hex()}});
   for (; subject_.scene() && on_disk_ < written(); ++on_disk_)

@@ -1,4 +1,5 @@
-// What a run of `simulate` writes as it goes: frames of a scene, or rows of a CSV file for matrices.
+// What a run of `simulate` writes as it goes: frames of a scene and their energies, or for matrices rows of
+// one CSV file with both.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +45,7 @@ class Recorder {
   void remember(double t, const State<Vector>& state);
   void write(double t, const State<Vector>& state);
   void write_row(const std::string& row);
+  void take_back_last();
   void wait_for_frame();
 
   // A hair early: the time of a step is a rounded sum.
@@ -58,6 +60,7 @@ class Recorder {
     double t;  // [s]
     int due;
     std::uintmax_t begin;  // of its row in the CSV file [bytes]
+    Fnv1a before;          // of all before that row
   };
   std::vector<Frame> frames_;
   int due_ = 0, most_ = 0;

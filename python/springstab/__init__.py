@@ -7,14 +7,15 @@
 """
 
 from ._diagnose import Diagnosis, GrowthFit, Pattern, diagnose
-from ._limits import Damping, Design, Limits, MethodLimits, StiffestMode, limits
+from ._limits import (Carrier, Cheapest, Damping, Design, Limits, MassScaling, MethodLimits, StepAnswer, StiffestMode,
+                      StiffestMotion, limits)
 from ._own_step import MethodFit, OwnStep, largest_stable_step
 from ._region import BoundaryArc, Method, Region, methods, region
 from ._simulate import Simulation, simulate
 from ._plot import plot_region
 
 __all__ = [
-    "BoundaryArc", "Damping", "Design", "Diagnosis", "GrowthFit", "Limits", "Method", "MethodFit", "MethodLimits",
-    "OwnStep", "Pattern", "Region", "Simulation", "StiffestMode", "diagnose", "largest_stable_step", "limits",
-    "methods", "plot_region", "region", "simulate",
+    "BoundaryArc", "Carrier", "Cheapest", "Damping", "Design", "Diagnosis", "GrowthFit", "Limits", "MassScaling",
+    "Method", "MethodFit", "MethodLimits", "OwnStep", "Pattern", "Region", "Simulation", "StepAnswer", "StiffestMode",
+    "StiffestMotion", "diagnose", "largest_stable_step", "limits", "methods", "plot_region", "region", "simulate",
 ]

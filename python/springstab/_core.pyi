@@ -38,7 +38,7 @@ class Method:
 def methods() -> Tuple[List[Method], List[Method]]: ...
 def limits(
     input: Input, methods: List[Method], safety: float, max_step: Optional[float], seed: int, certify: bool,
-    digits: int, certify_loss: float,
+    digits: int, certify_loss: float, for_step: Optional[float], error: Optional[float], stiffest: bool,
 ) -> Dict[str, Any]: ...
 def diagnose(
     frames: Any, h: float, every: int, input: Optional[Input], methods: List[Method]

@@ -9,8 +9,14 @@ from . import _core
 
 
 def _matrix(a):
-    """A dense or sparse matrix, or the name of a file, as compressed columns of float64."""
-    return None if a is None else scipy.sparse.csc_matrix(a, dtype=float)
+    """A dense or sparse matrix as compressed columns of float64, each row at most once and in order."""
+    if a is None:
+        return None
+    matrix = scipy.sparse.csc_matrix(a, dtype=float)
+    if not matrix.has_canonical_format:
+        matrix = matrix.copy()  # the caller's own stays as it is
+        matrix.sum_duplicates()
+    return matrix
 
 
 def as_input(source, mass, damping, grid, spacing, material, pin, scale, diagonals, implicit_damping=None):

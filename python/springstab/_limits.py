@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import html
 from dataclasses import dataclass
-from typing import Dict, Iterator, Mapping, Optional, Sequence, Union
+from typing import Dict, Iterator, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
 
 from . import _core
 from ._input import as_input, positive
@@ -85,6 +87,81 @@ class MethodLimits:
 
 
 @dataclass(frozen=True)
+class MassScaling:
+    """Mass that makes a step hold: ``particles`` maps numbers in the input to what each gets [kg].
+
+    ``added_mass`` is their sum, ``least_added_mass`` what no such scaling can go below.
+    """
+
+    particles: Dict[int, float]
+    added_mass: float
+    least_added_mass: float
+    proved: bool
+
+
+@dataclass(frozen=True)
+class StepAnswer:
+    """Whether one method holds at ``step`` [s], and what alone would make it hold where it does not.
+
+    ``holds`` is None where it is not known. ``margin`` is h_max/step. The changes: the largest factor below 1 on K,
+    the range of ``alpha`` [s], the least factor above 1 on M, mass for some particles, the fewest ``substeps``.
+    ``reasons`` says by their names why some of these are None.
+    """
+
+    step: float
+    holds: Optional[bool]
+    margin: Optional[float]
+    proved: bool
+    stiffness_factor: Optional[float]
+    alpha: Optional[Tuple[float, float]]
+    uniform_mass_factor: Optional[float]
+    mass_scaling: Optional[MassScaling]
+    substeps: Optional[int]
+    reasons: Dict[str, str]
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """An element (or where there are none an unknown) that carries the stiffest mode.
+
+    ``share`` of the mode's energy, ``stiffness`` its largest eigenvalue [N/m], ``mass`` of its free particles [kg].
+    """
+
+    kind: str
+    index: int
+    share: float
+    vertices: Sequence[int]
+    stiffness: float
+    mass: float
+
+
+@dataclass(frozen=True)
+class StiffestMotion:
+    """What decides the step: the ten ``carriers`` of most of the stiffest mode's energy, and that ``mode``, (n,).
+
+    ``nodal_bound`` and ``element_bound`` are the bounds on k0 [1/s²] that explicit finite-element codes run with.
+    """
+
+    carriers: Sequence[Carrier]
+    mode: np.ndarray
+    nodal_bound: Optional[float]
+    element_bound: Optional[float]
+
+
+@dataclass(frozen=True)
+class Cheapest:
+    """The method and the step [s] that cost least CPU time for an error, and why; ``error`` is predicted over
+    ``error_over`` [s]."""
+
+    method: Optional[str]
+    step: Optional[float]
+    cpu_seconds_per_second: Optional[float]
+    error: Optional[float]
+    error_over: Optional[float]
+    reason: str
+
+
+@dataclass(frozen=True)
 class Limits(Mapping[str, MethodLimits]):
     """The answer for a structure: a mapping from the names of methods to :class:`MethodLimits`."""
 
@@ -97,6 +174,9 @@ class Limits(Mapping[str, MethodLimits]):
     damping: Damping
     safety: float
     methods: Dict[str, MethodLimits]
+    for_step: Optional[Dict[str, StepAnswer]] = None
+    stiffest: Optional[StiffestMotion] = None
+    cheapest: Optional[Cheapest] = None
 
     def __getitem__(self, name: Union[str, Method]) -> MethodLimits:
         return self.methods[str(name)]
@@ -138,7 +218,8 @@ class Limits(Mapping[str, MethodLimits]):
 
 def limits(K=None, M=None, D=None, *, methods: Sequence[AnyMethod] = (), safety: float = 1.5,
            max_step: float = 0.01, certify: bool = True, digits: Optional[int] = None,
-           certify_loss: float = 1e-3, implicit_damping=None, seed: int = 1, grid: Optional[str] = None,
+           certify_loss: float = 1e-3, for_step: Optional[float] = None, error: Optional[float] = None,
+           stiffest: bool = False, implicit_damping=None, seed: int = 1, grid: Optional[str] = None,
            spacing: Optional[float] = None, material: Optional[str] = None, pin: Optional[str] = None,
            scale: Optional[float] = None, diagonals: Optional[str] = None) -> Limits:
     """The largest stable step of each method for ``M x'' = −K x − D v``, or for a scene.
@@ -155,6 +236,11 @@ def limits(K=None, M=None, D=None, *, methods: Sequence[AnyMethod] = (), safety:
     certify : False leaves out every proof, which is quicker
     digits : of h, 1 to 10; default: all, or 4 from 20 000 unknowns on
     certify_loss : part of h that a proof by pieces of a large system may lose
+    for_step : a wanted step [s], optional
+        Whether each method holds there, and what would make it hold.
+    error : between 0 and 1, optional
+        The cheapest method and step for this error, relative to what moves.
+    stiffest : True for what carries the stiffest mode
     implicit_damping : (n, n) array or sparse matrix, optional
         More of D [kg/s]: what implicit-damping-euler takes implicitly (default: all of D).
     grid, spacing, material, pin, scale, diagonals
@@ -180,18 +266,31 @@ def limits(K=None, M=None, D=None, *, methods: Sequence[AnyMethod] = (), safety:
     '0.010005'
     >>> answer["implicit-euler"].status
     'unlimited'
+    >>> wanted = limits(chain, methods=["symplectic-euler"], for_step=1 / 60).for_step["symplectic-euler"]
+    >>> wanted.holds, wanted.substeps, f"{wanted.stiffness_factor:.4f}"
+    (False, 2, '0.3603')
     """
     positive("max_step", max_step)
+    positive("for_step", for_step)
+    if error is not None and not 0 < error < 1:
+        raise ValueError(f"error: is {error:g}, expected more than 0 and less than 1")
     if digits is not None and not 1 <= digits <= 10:
         raise ValueError(f"digits: is {digits}, expected 1 to 10")
     if not 1e-5 <= certify_loss < 1:
         raise ValueError(f"certify_loss: is {certify_loss:g}, expected at least 1e-5 and less than 1")
     of = as_input(K, M, D, grid, spacing, material, pin, scale, diagonals, implicit_damping)
     found = _core.limits(of, [as_method(m)._method for m in methods], safety, max_step, seed, certify, digits or 0,
-                         certify_loss)
+                         certify_loss, for_step, error, stiffest)
     found["k0"] = StiffestMode(**found["k0"])
     found["damping"] = Damping(**found["damping"])
     for one in found["methods"].values():
         one["designed"] = one["designed"] and Design(*one["designed"])
     found["methods"] = {name: MethodLimits(**one) for name, one in found["methods"].items()}
+    for one in (found["for_step"] or {}).values():
+        one["mass_scaling"] = one["mass_scaling"] and MassScaling(**one["mass_scaling"])
+    found["for_step"] = found["for_step"] and {name: StepAnswer(**one) for name, one in found["for_step"].items()}
+    if found["stiffest"]:
+        found["stiffest"]["carriers"] = [Carrier(**one) for one in found["stiffest"]["carriers"]]
+        found["stiffest"] = StiffestMotion(**found["stiffest"])
+    found["cheapest"] = found["cheapest"] and Cheapest(**found["cheapest"])
     return Limits(**found)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 import scipy.sparse
 
 import springstab as ss
@@ -200,3 +201,75 @@ def test_plot_region_draws_the_boundary():
     matplotlib.use("Agg")
     ax = ss.plot_region("rk4")
     assert ax.lines and ax.get_xlabel() and ax.get_ylabel()
+
+
+@pytest.mark.parametrize("scene", ["damped_cloth.json", "beam.veg"])
+def test_a_wanted_step_is_answered_as_by_the_command(scene):
+    path = root / "experiments" / "scenes" / scene
+    ours = ss.limits(path, for_step=2e-3, stiffest=True)
+    theirs = of_command("limits", str(path), "--for-step", "2e-3")
+    assert ours.for_step.keys() == theirs["for_step"].keys()
+    for name, answer in ours.for_step.items():
+        said = theirs["for_step"][name]
+        for field in ["step", "holds", "margin", "proved", "stiffness_factor", "uniform_mass_factor", "substeps"]:
+            assert getattr(answer, field) == numbers(said.get(field)), (name, field)
+        assert (answer.alpha and [*answer.alpha]) == said.get("alpha"), name
+        scaling, said_scaling = answer.mass_scaling, said.get("mass_scaling")
+        assert (scaling is None) == (said_scaling is None)
+        if scaling:
+            assert scaling.proved == said_scaling["proved"]
+            assert scaling.particles == {p["index"]: p["added_mass"] for p in said_scaling["particles"]}
+        if answer.holds is False:
+            assert answer.reasons == said.get("reasons", {})
+    for one, said in zip(ours.stiffest.carriers, theirs["stiffest"], strict=True):
+        assert dataclasses.asdict(one) == said
+    assert ours.stiffest.nodal_bound == theirs["cheap_bounds"]["nodal"]["k0"]
+    assert ours.stiffest.mode.shape == (ours.degrees_of_freedom,)
+
+
+def test_sparse_matrices_may_have_any_order_and_repeat_entries():
+    K = np.array([[5.0, -2.0, 0.0], [-2.0, 4.0, -1.0], [0.0, -1.0, 3.0]])
+    expected = ss.limits(K)
+    assert expected.symmetric and expected["symplectic-euler"].h_certified
+    repeated = scipy.sparse.csc_matrix((np.repeat(K.T / 2, 2), np.tile([0, 0, 1, 1, 2, 2], 3), [0, 6, 12, 18]))
+    backwards = scipy.sparse.csc_matrix((K.T[:, ::-1].ravel(), np.tile([2, 1, 0], 3), [0, 3, 6, 9]))
+    before = backwards.indices.copy()
+    by_diagonals = scipy.sparse.diags([np.diag(K, i) for i in (-1, 0, 1)], [-1, 0, 1])
+    for same in [repeated, backwards, by_diagonals, scipy.sparse.coo_array(K), scipy.sparse.csr_matrix(K)]:
+        assert (same.toarray() == K).all()
+        found = ss.limits(same)
+        assert found.symmetric and found.methods == expected.methods
+    assert (backwards.indices == before).all()
+
+
+def test_mass_scaling_of_matrices_names_the_unknowns_that_have_mass():
+    K = chain(5, 1.0).toarray()
+    K[3, :] *= 50
+    K[:, 3] *= 50
+    M = np.diag([1.0, 0.0, 1.0, 1.0, 1.0])  # unknown 1 is condensed
+    answer = ss.limits(K, M, methods=["symplectic-euler"], for_step=0.2).for_step["symplectic-euler"]
+    assert answer.holds is False and 3 in answer.mass_scaling.particles and 1 not in answer.mass_scaling.particles
+    changed = M + np.diag([answer.mass_scaling.particles.get(i, 0.0) for i in range(5)])
+    assert ss.limits(K, changed, methods=["symplectic-euler"])["symplectic-euler"].h_max >= 0.2
+
+
+def test_an_error_chooses_the_cheapest_method():
+    answer = ss.limits(chain(30), error=1e-3)
+    assert answer.cheapest.method in answer and answer.cheapest.error <= 1e-3 and answer.cheapest.reason
+    assert ss.limits(chain(30)).cheapest is None
+    for error in [0.0, 1.0, math.nan]:
+        with pytest.raises(ValueError, match="error: is"):
+            ss.limits(chain(3), error=error)
+
+
+def test_the_cells_of_the_documentation_run(tmp_path, monkeypatch, capsys):
+    page = (root / "docs" / "python.md").read_text()
+    cells = page.split("as cells of a notebook:\n\n```python\n")[1].split("```")[0]
+    scipy.io.mmwrite(tmp_path / "K.mtx", chain(20))
+    scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.eye(20))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    assert sum(1 for line in cells.splitlines() if line.strip()) <= 11
+    exec(cells, {})
+    assert "StepAnswer(step=0.0016" in capsys.readouterr().out
+    assert (tmp_path / "region.png").read_bytes().startswith(b"\x89PNG")

@@ -18,10 +18,12 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
+/// What a face belongs to.
+constexpr auto obj_attributes = std::to_array<std::string_view>({"g", "o", "s", "usemtl", "mtllib"});
+
 /// What the format has and a polygon mesh does not need.
-constexpr auto obj_skipped =
-    std::to_array<std::string_view>({"vn", "g", "s", "mg", "o", "bevel", "c_interp", "d_interp", "lod",
-                                     "usemap", "usemtl", "mtllib", "maplib", "shadow_obj", "trace_obj"});
+constexpr auto obj_skipped = std::to_array<std::string_view>(
+    {"vn", "mg", "bevel", "c_interp", "d_interp", "lod", "usemap", "maplib", "shadow_obj", "trace_obj"});
 
 /// What would add to the geometry, or belongs to its vertices, and is left out: points, lines, free-form
 /// curves and surfaces with all that they consist of; and from other programs than the format's first,
@@ -45,6 +47,14 @@ Location next_statement(LineReader& lines, Words& words) {
     continued = append_words(line, words, '#') && continued;
   }
   return begin;
+}
+
+/// All but the first.
+std::string joined(const Words& words) {
+  std::string line;
+  for (const std::string_view word : std::span(words).subspan(1))
+    line.append(line.empty() ? "" : " ").append(word);
+  return line;
 }
 
 /// Things of one kind that are dropped or not used: how many, and the line of the first.
@@ -138,6 +148,10 @@ class ObjReader {
     check_indices();
     use_textures();
     tell();
+    if (!textures_.empty() && coordinates_.count == 0) {
+      mesh_.attributes.textures = std::move(textures_);
+      mesh_.attributes.corner_textures = std::move(corner_textures_);
+    }
     return std::move(mesh_);
   }
 
@@ -151,6 +165,8 @@ class ObjReader {
       textures_.push_back(parse_texture(words, at, coordinates_));
     } else if (keyword == "f" || keyword == "fo") {  // "fo": what old files call it
       face(words, at);
+    } else if (is_among(obj_attributes, keyword)) {
+      mesh_.attributes.statements.push_back({mesh_.faces(), std::string(keyword), joined(words)});
     } else if (is_among(obj_left_out, keyword)) {
       left_out_[keyword].add(at);
     } else if (!is_among(obj_skipped, keyword)) {

@@ -1,4 +1,5 @@
-// Wavefront OBJ: the polygons of a mesh and their texture coordinates, and nothing else of the format.
+// Wavefront OBJ: the polygons of a mesh, their texture coordinates, groups and materials, and nothing else of
+// the format.
 #pragma once
 
 #include <string>
@@ -12,7 +13,8 @@ namespace springstab {
 /// texture coordinates (`vt`) of an OBJ file. The mesh's notes tell what else there is that has a place in
 /// space or belongs to a vertex and is not read (lines, points, free-form geometry, weights, creases), faces
 /// of one or two corners, which are dropped, and why texture coordinates are not used where something is
-/// wrong with them. Normals, groups and materials are skipped without a word; a statement that the format
+/// wrong with them. Groups and materials are kept as attributes of the faces, normals are skipped without a
+/// word; a statement that the format
 /// does not have is an error. Throws InputError, with the line, for anything that is not exactly a number or
 /// an index in range (of a normal: an index), and where the file has no vertices or no faces.
 Mesh parse_obj(const std::string& source, std::string_view text);

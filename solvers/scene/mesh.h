@@ -14,6 +14,19 @@ struct FileNote {
   std::string text;
 };
 
+/// What an OBJ file says of its faces beside their corners.
+struct FaceAttributes {
+  /// A statement of a group (`g`), object (`o`), material (`mtllib`, `usemtl`) or smoothing group (`s`),
+  /// which stands before this face and holds from it on.
+  struct Statement {
+    int face;
+    std::string keyword, words;
+  };
+  std::vector<Statement> statements;
+  std::vector<Eigen::Vector2d> textures;  // texture coordinates, as the file numbers them
+  std::vector<int> corner_textures;       // the number of each corner's from 0, or -1: one per face_vertices
+};
+
 /// Polygons over vertices. Face f has the vertices `face(f)`, in order around it, indices from 0.
 /// The source lines let an error that is found later (a zero-length edge, say) still name its line.
 struct Mesh {
@@ -27,6 +40,8 @@ struct Mesh {
   /// Texture coordinates of the corners: one per entry of face_vertices, or none at all where the file leaves
   /// a corner without. A vertex may have several, at a seam.
   std::vector<Eigen::Vector2d> corner_uv{};
+
+  FaceAttributes attributes{};  // of an OBJ file
 
   std::vector<FileNote> notes{};
 

@@ -153,10 +153,9 @@ SpringNet make_net(const Grid& grid, const SpringMaterial& material) {
                      "each particle weighs " + shown(mass) + " kg, expected a positive finite mass");
 
   SpringNet net;
-  net.mass.assign(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns), mass);
+  net.mass.assign(static_cast<std::size_t>(grid.particles()), mass);
   net.rest.reserve(net.mass.size());
-  for (int i = 0; i < grid.rows; ++i)
-    for (int j = 0; j < grid.columns; ++j) net.rest.emplace_back(j * grid.spacing, 0, i * grid.spacing);
+  for (int p = 0; p < grid.particles(); ++p) net.rest.push_back(grid.place(p));
 
   // The neighbours that come after a particle, in the order of their numbers.
   static constexpr struct {

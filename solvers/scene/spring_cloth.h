@@ -39,6 +39,12 @@ struct Grid {
   int columns = 0;
   double spacing = 0.025;                    // [m]
   Diagonals diagonals = Diagonals::uniform;  // of triangles; springs lie on both
+
+  int particles() const { return rows * columns; }
+  /// Where a particle rests [m].
+  Eigen::Vector3d place(int particle) const {
+    return {particle % columns * spacing, 0, particle / columns * spacing};
+  }
 };
 
 /// A damped Hookean spring between two particles, i < j.

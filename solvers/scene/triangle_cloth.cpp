@@ -112,10 +112,9 @@ TriangleCloth make_cloth(const Grid& grid, const ClothMaterial& material) {
 
   TriangleCloth cloth;
   cloth.material = material;
-  cloth.mass.assign(static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns), mass);
+  cloth.mass.assign(static_cast<std::size_t>(grid.particles()), mass);
   cloth.rest.reserve(cloth.mass.size());
-  for (int i = 0; i < grid.rows; ++i)
-    for (int j = 0; j < grid.columns; ++j) cloth.rest.emplace_back(j * grid.spacing, 0, i * grid.spacing);
+  for (int p = 0; p < grid.particles(); ++p) cloth.rest.push_back(grid.place(p));
   const auto triangle = [&](int a, int b, int c) {
     const auto uv = [&](int p) { return Vector2d(cloth.rest[p].x(), cloth.rest[p].z()); };
     return RestTriangle{{a, b, c}, {uv(a), uv(b), uv(c)}};

@@ -22,9 +22,8 @@ class CMakeBuild(build_ext):
         subprocess.run(
             ["cmake", "--build", folder, "--parallel", str(os.cpu_count()), "--target", "springstab_python"],
             check=True)
-        built, = (folder / "python" / "springstab").glob("_core*")
         target.mkdir(parents=True, exist_ok=True)
-        self.copy_file(built, target / built.name)
+        self.copy_file(folder / "python" / "springstab" / self.get_ext_filename("_core"), target)
 
 
 setup(ext_modules=[Extension("springstab._core", sources=[])], cmdclass={"build_ext": CMakeBuild})

@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -7,6 +9,11 @@
 #include "experiments/command/options.h"
 
 int main(int argc, char** argv) {
+#ifdef M_MMAP_MAX
+  // Large matrices come and go: a fifth of a proof's time went into fresh pages.
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+#endif
   const int status = springstab::run_command(argc, argv);
   errno = 0;
   std::cout.flush();

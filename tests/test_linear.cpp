@@ -208,6 +208,10 @@ BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
         BOOST_TEST((*places.begin() == 0 && *places.rbegin() == a.blocks() - 1));
 
         BOOST_TEST((Dense(a.to_sparse()) == dense));
+        const std::optional<BlockSparseMatrix> again = in_blocks(a.to_sparse());
+        BOOST_REQUIRE(again.has_value());
+        BOOST_TEST((Dense(again->to_sparse()) == dense));
+        BOOST_TEST(again->blocks() == a.blocks());
         const Vector in = random.vector(3 * rows);
         Vector out = Vector::Constant(3 * rows, nan_value);
         a.multiply(in.data(), out.data());
@@ -223,6 +227,13 @@ BOOST_AUTO_TEST_CASE(a_block_matrix_is_the_dense_matrix_that_it_stands_for) {
         BOOST_TEST(a.to_sparse().nonZeros() == 0);
         BOOST_TEST(a.blocks() == static_cast<long>(pattern.size()));
       }
+}
+
+BOOST_AUTO_TEST_CASE(a_matrix_is_left_as_it_is_where_blocks_would_be_larger) {
+  const auto blocks = [](const Dense& a) { return in_blocks(a.sparseView()); };
+  BOOST_TEST(blocks(Dense::Ones(6, 6)).has_value());
+  BOOST_TEST(!blocks(Dense::Ones(7, 7)).has_value());      // no whole blocks
+  BOOST_TEST(!blocks(Dense::Identity(6, 6)).has_value());  // 6 numbers of 12 bytes in two blocks of 76
 }
 
 BOOST_AUTO_TEST_CASE(a_block_outside_the_matrix_is_an_error) {

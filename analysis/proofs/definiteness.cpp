@@ -18,31 +18,57 @@ constexpr int particles_a_piece = 20'000;
 // The loss measured on nets is 0.15 / layers² to 0.4 / layers², the more where stiffnesses vary tenfold.
 int layers_for(double loss) { return std::clamp(static_cast<int>(std::ceil(std::sqrt(0.23 / loss))), 2, 64); }
 
-// A, plus 1e-9 of its diagonal and 1e-13 of its largest entry.
-SparseMatrix lifted(SparseMatrix a) {
-  const double largest = a.coeffs().abs().maxCoeff();
-  a.diagonal() +=
-      (1e-9 * a.diagonal().cwiseAbs() + Eigen::VectorXd::Constant(a.rows(), 1e-13 * largest)).eval();
-  return a;
+// The entries of `a`, one for each entry of `all`, whose pattern holds that of `a`.
+Eigen::VectorXd entries_in(const SparseMatrix& all, const SparseMatrix& a) {
+  Eigen::VectorXd entries(all.nonZeros());
+  for (Eigen::Index j = 0, at = 0; j < all.cols(); ++j) {
+    SparseMatrix::InnerIterator own(a, j);
+    for (SparseMatrix::InnerIterator entry(all, j); entry; ++entry, ++at) {
+      const bool there = own && own.row() == entry.row();
+      entries[at] = there ? own.value() : 0;
+      if (there) ++own;
+    }
+  }
+  return entries;
 }
 
 }  // namespace
 
 DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, double loss) : loss_(loss) {
   const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
-  mass_ = scaled(s.mass, d);
-  stiffness_ = scaled(s.stiffness, d);
-  if (s.has_damping()) damping_ = scaled(s.damping, d);
-  mass_size_ = row_sums(mass_);
-  stiffness_size_ = row_sums(stiffness_);
-  damping_size_ = s.has_damping() ? row_sums(damping_) : Eigen::VectorXd::Zero(s.size());
+  const SparseMatrix mass = scaled(s.mass, d), stiffness = scaled(s.stiffness, d);
+  matrix_ = mass + stiffness;
+  mass_size_ = row_sums(mass);
+  stiffness_size_ = row_sums(stiffness);
+  damping_size_ = Eigen::VectorXd::Zero(s.size());
+  if (s.has_damping()) {
+    const SparseMatrix damping = scaled(s.damping, d);
+    matrix_ = SparseMatrix(matrix_ + damping);
+    damping_size_ = row_sums(damping);
+    damping_ = entries_in(matrix_, damping);
+  }
+  mass_ = entries_in(matrix_, mass);
+  stiffness_ = entries_in(matrix_, stiffness);
+  diagonal_.resize(s.size());
+  sizes_.resize(s.size());
 }
 
-// c M - a D - b K, with an entry for each of theirs.
-SparseMatrix DefinitenessProof::sum(double c, double a, double b) const {
-  SparseMatrix matrix = c * mass_ - b * stiffness_;
-  if (damping_.size() > 0) matrix = SparseMatrix(matrix - a * damping_);
-  return matrix;
+// c M - a D - b K, in one pass.
+void DefinitenessProof::form(double c, double a, double b) {
+  double* const value = matrix_.valuePtr();
+  const bool damped = damping_.size() > 0;
+  for (Eigen::Index j = 0; j < matrix_.cols(); ++j) {
+    double size = 0;
+    diagonal_[j] = 0;
+    for (Eigen::Index p = matrix_.outerIndexPtr()[j]; p < matrix_.outerIndexPtr()[j + 1]; ++p) {
+      double v = c * mass_[p] - b * stiffness_[p];
+      if (damped) v -= a * damping_[p];
+      value[p] = v;
+      size += std::abs(v);
+      if (matrix_.innerIndexPtr()[p] == j) diagonal_[j] = v;
+    }
+    sizes_[j] = size;
+  }
 }
 
 // What is too large to be factorized at once.
@@ -63,31 +89,35 @@ int DefinitenessProof::pieces() const {
 #endif
 }
 
-bool DefinitenessProof::factorizes() { return cholesky_.analyze(sum(1, 1, 1)); }
+bool DefinitenessProof::factorizes() { return cholesky_.analyze(matrix_); }
 
 bool DefinitenessProof::holds(double c, double a, double b) {
-  SparseMatrix matrix = sum(c, a, b);
+  form(c, a, b);
   const Eigen::VectorXd forming_error =
       8 * unit_roundoff *
       (std::abs(c) * mass_size_ + std::abs(a) * damping_size_ + std::abs(b) * stiffness_size_);
-  const Eigen::VectorXd diagonal = matrix.diagonal();
-  if (!forming_error.allFinite() || !(diagonal.minCoeff() > 0)) return false;
+  if (!forming_error.allFinite() || !(diagonal_.minCoeff() > 0)) return false;
 
   // Gershgorin: 2 a_ii exceeds the row's absolute sum, whose own rounding is below n unit roundoffs of it.
-  const double summing_error = 2 * unit_roundoff * static_cast<double>(matrix.rows());
-  if ((2 * diagonal - row_sums(matrix) - 2 * forming_error - summing_error * diagonal).minCoeff() > 0)
-    return true;
-  if (!cholesky_.analyze(matrix)) {
-    matrix.diagonal() -= forming_error;
-    return in_pieces(matrix);
+  const double summing_error = 2 * unit_roundoff * static_cast<double>(matrix_.rows());
+  if ((2 * diagonal_ - sizes_ - 2 * forming_error - summing_error * diagonal_).minCoeff() > 0) return true;
+  if (!cholesky_.analyze(matrix_)) {
+    matrix_.diagonal() -= forming_error;
+    return in_pieces(matrix_);
   }
-  matrix.diagonal() -= forming_error + cholesky_.error() * diagonal;
-  return cholesky_.factorize(matrix);
+  matrix_.diagonal() -= forming_error + cholesky_.error() * diagonal_;
+  return cholesky_.factorize(matrix_);
 }
 
+// Of K plus 1e-9 of its diagonal and 1e-13 of its largest entry.
 bool DefinitenessProof::stiffness_is_semidefinite() {
-  if (!stiffness_is_semidefinite_)
-    stiffness_is_semidefinite_ = stiffness_.nonZeros() == 0 || cholesky_.factorize(lifted(sum(0, 0, -1)));
+  if (!stiffness_is_semidefinite_) {
+    form(0, 0, -1);
+    const double largest = matrix_.nonZeros() > 0 ? matrix_.coeffs().abs().maxCoeff() : 0;
+    const Eigen::VectorXd lift = (1e-9 * diagonal_.array().abs() + 1e-13 * largest).matrix();
+    matrix_.diagonal() += lift;
+    stiffness_is_semidefinite_ = largest == 0 || cholesky_.factorize(matrix_);
+  }
   return *stiffness_is_semidefinite_;
 }
 

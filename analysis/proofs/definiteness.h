@@ -33,9 +33,11 @@ class DefinitenessProof {
 
  private:
   bool in_pieces(const SparseMatrix& matrix);
-  SparseMatrix sum(double c, double a, double b) const;
+  void form(double c, double a, double b);
 
-  SparseMatrix mass_, damping_, stiffness_;
+  SparseMatrix matrix_;                         // of all three's pattern: what was formed last
+  Eigen::VectorXd diagonal_, sizes_;            // its diagonal and absolute row sums
+  Eigen::VectorXd mass_, damping_, stiffness_;  // an entry for each of the matrix's; empty without damping
   Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
   SparseCholesky cholesky_;
   double loss_;

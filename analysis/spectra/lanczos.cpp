@@ -10,48 +10,41 @@
 namespace springstab {
 namespace {
 
-// A/scale, about of unit size; a power of two, so that nothing is rounded.
-class ScaledProduct {
+// T v_j = β_{j-1} v_{j-1} + α_j v_j + β_j v_{j+1} of A/scale, about of unit size; a power of two, so that
+// nothing is rounded. Passes over vectors count here: a product of a flat net costs no more than five of
+// them.
+class Recurrence {
  public:
-  explicit ScaledProduct(const LinearOperator& a) : a_(a) {}
+  Recurrence(const LinearOperator& a, const Eigen::VectorXd& start)
+      : a_(a), before_(Eigen::VectorXd::Zero(start.size())), now_(start.normalized()) {}
 
-  void operator()(const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-    a_.apply(in, out);
-    ++products_;
-    const double size = out.cwiseAbs().maxCoeff();
-    if (!std::isfinite(size))
-      throw std::invalid_argument("the operator's product is not finite, expected finite matrices");
-    if (products_ == 1 && size > 0) scale_ = std::exp2(std::ilogb(size / in.cwiseAbs().maxCoeff()));
-    out /= scale_;
-  }
+  const Eigen::VectorXd& now() const { return now_; }
   double scale() const { return scale_; }
-  long products() const { return products_; }
-
- private:
-  const LinearOperator& a_;
-  double scale_ = 1;
-  long products_ = 0;
-};
-
-// T v_j = β_{j-1} v_{j-1} + α_j v_j + β_j v_{j+1}.
-struct Recurrence {
-  Eigen::VectorXd before, now, image;
-  double beta = 0;
-
-  explicit Recurrence(const Eigen::VectorXd& start)
-      : before(Eigen::VectorXd::Zero(start.size())), now(start.normalized()) {}
 
   // β_j; the vector v_{j+1} is now, unless that is 0.
-  double step(ScaledProduct& product, double& alpha) {
-    product(now, image);
-    image -= beta * before;
-    alpha = image.dot(now);
-    image -= alpha * now;
-    beta = image.norm();
-    before.swap(now);
-    if (beta > 0) now = image / beta;
-    return beta;
+  double step(double& alpha) {
+    a_.apply(now_, product_);
+    if (beta_ < 0) set_scale();
+    image_ = product_ / scale_ - std::max(beta_, 0.0) * before_;
+    alpha = image_.dot(now_);
+    if (!std::isfinite(alpha))
+      throw std::invalid_argument("the operator's product is not finite, expected finite matrices");
+    image_ -= alpha * now_;
+    beta_ = image_.norm();
+    before_.swap(now_);
+    if (beta_ > 0) now_ = image_ / beta_;
+    return beta_;
   }
+
+ private:
+  void set_scale() {
+    const double size = product_.cwiseAbs().maxCoeff();
+    if (std::isfinite(size) && size > 0) scale_ = std::exp2(std::ilogb(size / now_.cwiseAbs().maxCoeff()));
+  }
+
+  const LinearOperator& a_;
+  Eigen::VectorXd before_, now_, product_, image_;
+  double beta_ = -1, scale_ = 1;  // before the first step
 };
 
 double largest_eigenvalue(const std::vector<double>& alpha, const std::vector<double>& beta) {
@@ -85,17 +78,18 @@ Eigen::VectorXd top_vector(const std::vector<double>& alpha, const std::vector<d
 }  // namespace
 
 SymmetricEigenpairs largest_by_lanczos(const LinearOperator& a, const ArpackOptions& options,
-                                       bool with_vector) {
+                                       bool with_vector, Eigen::Index most_kept) {
   const Eigen::VectorXd start = start_vector(a.size, options.start, options.seed);
   const auto most = static_cast<std::size_t>(40 / std::sqrt(options.tolerance));
-  ScaledProduct product(a);
   std::vector<double> alpha, beta;
+  std::vector<Eigen::VectorXd> basis;  // as far as it is kept
   Eigen::VectorXd weights;
   SymmetricEigenpairs found;
   double theta = 0, residual = 0;
-  Recurrence forth(start);
+  Recurrence forth(a, start);
   for (std::size_t next = 8; alpha.size() < most && !found.converged;) {
-    beta.push_back(forth.step(product, alpha.emplace_back()));
+    if (with_vector && std::ssize(basis) * a.size < most_kept) basis.push_back(forth.now());
+    beta.push_back(forth.step(alpha.emplace_back()));
     if (alpha.size() < next && beta.back() > 0) continue;
     next = alpha.size() + alpha.size() / 8;
     theta = largest_eigenvalue(alpha, beta);
@@ -104,20 +98,25 @@ SymmetricEigenpairs largest_by_lanczos(const LinearOperator& a, const ArpackOpti
     found.converged = residual <= options.tolerance * std::abs(theta) || beta.back() == 0;
     if (beta.back() == 0) break;
   }
-  found.products = product.products();
+  found.products = std::ssize(alpha);
   if (!found.converged) return found;
-  found.values = {product.scale() * theta};
-  found.residuals = {product.scale() * residual};
+  found.values = {forth.scale() * theta};
+  found.residuals = {forth.scale() * residual};
   if (!with_vector) return found;
-  Recurrence again(start);
-  Eigen::VectorXd vector = weights[0] * again.now;
-  double ignored = 0;
-  for (Eigen::Index i = 1; i < weights.size(); ++i) {
-    again.step(product, ignored);
-    vector += weights[i] * again.now;
+  Eigen::VectorXd vector = Eigen::VectorXd::Zero(a.size);
+  if (std::ssize(basis) >= weights.size()) {
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+      vector += weights[i] * basis[static_cast<std::size_t>(i)];
+  } else {
+    basis.clear();
+    Recurrence again(a, start);
+    double ignored = 0;
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+      if (i > 0) again.step(ignored), ++found.products;
+      vector += weights[i] * again.now();
+    }
   }
   found.vectors = vector.normalized();
-  found.products = product.products();
   return found;
 }
 

@@ -73,6 +73,21 @@ LinearOperator NumericalRange::sum(double a, double b) const {
 
 std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double tolerance,
                                                      const Eigen::VectorXd& near) const {
+  std::optional<Axis>* const axis = size_ < many_unknowns ? nullptr
+                                    : a == 0 && b > 0     ? &stiffest_
+                                    : b == 0 && a > 0     ? &most_damped_
+                                                          : nullptr;
+  if (!axis) return search(a, b, tolerance, near);
+  if (!*axis || (*axis)->tolerance > tolerance) {
+    const std::optional<ExtremePoint> found = search(a, b, tolerance, near);
+    if (!found) return std::nullopt;
+    *axis = {*found, tolerance};
+  }
+  return (*axis)->point;
+}
+
+std::optional<ExtremePoint> NumericalRange::search(double a, double b, double tolerance,
+                                                   const Eigen::VectorXd& near) const {
   if (size_ <= dense_limit) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
         Eigen::MatrixXd(a * dense_damping_ + b * dense_stiffness_));

@@ -35,6 +35,7 @@ class NumericalRange {
                                        const Eigen::VectorXd& near = {}) const;
 
  private:
+  std::optional<ExtremePoint> search(double a, double b, double tolerance, const Eigen::VectorXd& near) const;
   LinearOperator sum(double a, double b) const;
   ExtremePoint point(const Eigen::VectorXd& v) const;
 
@@ -43,6 +44,13 @@ class NumericalRange {
   LinearOperator damping_, stiffness_;  // mass-scaled
   Eigen::MatrixXd dense_damping_, dense_stiffness_;
   SparseMatrix sparse_damping_, sparse_stiffness_;  // of many unknowns with a diagonal mass
+
+  // Of many unknowns, what is largest in K' alone and in D' alone: every search begins there.
+  struct Axis {
+    ExtremePoint point;
+    double tolerance;
+  };
+  mutable std::optional<Axis> stiffest_, most_damped_;
 };
 
 }  // namespace springstab

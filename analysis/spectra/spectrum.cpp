@@ -14,6 +14,7 @@
 #include "analysis/proofs/definiteness.h"
 #include "analysis/spectra/chebyshev_filter.h"
 #include "analysis/spectra/lanczos.h"
+#include "solvers/linear/block_sparse_matrix.h"
 #include "solvers/linear/dense_solvers.h"
 #include "solvers/team.h"
 
@@ -188,8 +189,17 @@ void both_at_once(const First& first, const Second& second) {
 LinearOperator symmetric_operator(SparseMatrix a) {
   const Eigen::VectorXd centres = a.diagonal();
   const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
+  LinearOperator op{a.rows(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+  if (op.size >= many_unknowns)
+    if (std::optional<BlockSparseMatrix> blocks = in_blocks(a)) {
+      op.apply = [matrix = std::make_shared<const BlockSparseMatrix>(std::move(*blocks))](
+                     const Eigen::VectorXd& in, Eigen::VectorXd& out) {
+        out.resize(in.size());
+        matrix->multiply(in.data(), out.data());
+      };
+      return op;
+    }
   const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
-  LinearOperator op{matrix->rows(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
   if (op.size < many_unknowns) {
     op.apply = [matrix](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out.noalias() = *matrix * in; };
   } else {  // row by row, which reads `out` but once

@@ -50,4 +50,38 @@ Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {
   return matrix;
 }
 
+std::optional<BlockSparseMatrix> in_blocks(const Eigen::SparseMatrix<double>& a) {
+  using Entry = Eigen::SparseMatrix<double>::InnerIterator;
+  constexpr double block_bytes = 76, number_bytes = 12;
+  if (a.rows() % 3 != 0) return std::nullopt;
+  const int rows = static_cast<int>(a.rows()) / 3;
+  const auto most = static_cast<long>(number_bytes / block_bytes * static_cast<double>(a.nonZeros())) - rows;
+  std::vector<std::pair<int, int>> couplings;
+  std::vector<int> below;
+  for (int j = 0; j < rows; ++j) {
+    if (std::ssize(couplings) > most) return std::nullopt;
+    below.clear();
+    for (int c = 3 * j; c < 3 * j + 3; ++c)
+      for (Entry entry(a, c); entry; ++entry)
+        if (const int i = static_cast<int>(entry.row()) / 3; i > j && (below.empty() || below.back() != i))
+          below.push_back(i);
+    std::ranges::sort(below);
+    below.erase(std::unique(below.begin(), below.end()), below.end());
+    for (const int i : below) couplings.emplace_back(i, j);
+  }
+  if (std::ssize(couplings) > most) return std::nullopt;
+  BlockSparseMatrix in_blocks(rows, couplings);
+  for (int c = 0; c < 3 * rows; ++c) {
+    int row = -1;
+    double* block = nullptr;
+    for (Entry entry(a, c); entry; ++entry) {
+      const int i = static_cast<int>(entry.row()) / 3;
+      if (i < c / 3) continue;
+      if (i != row) block = in_blocks.block(in_blocks.find(row = i, c / 3));
+      block[3 * (entry.row() % 3) + c % 3] = entry.value();
+    }
+  }
+  return in_blocks;
+}
+
 }  // namespace springstab

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <optional>
 #include <vector>
 
 #include "solvers/linear/block_pattern.h"
@@ -134,6 +135,9 @@ void BlockSparseMatrix::share_rows(const double* in, const Take& take) const {
     multiply_rows<Above::beyond>(in, {part.rows.first, part.inner}, part.rows.first, take);
   });
 }
+
+/// A symmetric matrix as blocks, where its rows come in threes and this takes less memory; else nothing.
+std::optional<BlockSparseMatrix> in_blocks(const Eigen::SparseMatrix<double>& a);
 
 /// block += a I + b n nᵀ, with n a vector of 3: the shape of every spring's Jacobian.
 inline void add_isotropic_and_axial(double* block, double a, double b, const double* n) {

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "solvers/io/input_error.h"
+
 namespace springstab {
 namespace {
 
@@ -46,8 +48,8 @@ void MatrixBuilder::check_duplicates(Duplicates duplicates) const {
     if (!same || (duplicates == Duplicates::summed && std::isfinite(sum + entry.value()))) continue;
     Location{source_, entry.line}.fail(
         "a second entry " + position(entry.row() + 1LL, entry.col() + 1LL) +
-        (symmetry_ == Symmetry::general ? "" : " or its mirror image") + " after that of line " +
-        std::to_string(before.line) +
+        (symmetry_ == Symmetry::general ? "" : " or its mirror image") + " after that of " +
+        place_name(before.line) +
         (duplicates == Duplicates::refused
              ? ", expected one entry per position (--sum-duplicates adds them up)"
              : ", expected that their sum fits in double precision"));

@@ -13,8 +13,12 @@
 #include "solvers/io/matrix_market.h"
 #include "solvers/io/mesh_builder.h"
 #include "solvers/io/obj.h"
+#include "solvers/io/off.h"
+#include "solvers/io/ply.h"
+#include "solvers/io/stl.h"
 #include "solvers/io/vega.h"
 #include "solvers/io/vtk.h"
+#include "solvers/io/vtk_xml.h"
 
 namespace springstab::test {
 namespace {
@@ -43,7 +47,7 @@ void check_matrix(const Eigen::SparseMatrix<double>& matrix) {
 
 void check_notes(const std::vector<FileNote>& notes) {
   for (const FileNote& note : notes)
-    require(note.line > 0 && !note.text.empty() &&
+    require(note.line != 0 && !note.text.empty() &&
                 std::ranges::none_of(note.text, [](unsigned char c) { return c < ' ' || c == 127; }),
             "a note has a line and is printable");
 }
@@ -120,9 +124,13 @@ const std::vector<Reader>& readers() {
       {"harwell_boeing", [](std::string_view text) { check_matrix(parse_harwell_boeing(source, text)); }},
       {"matrix_market", [](std::string_view text) { check_matrix(parse_matrix_market(source, text)); }},
       {"obj", [](std::string_view text) { check_mesh(parse_obj(source, text)); }},
+      {"off", [](std::string_view text) { check_mesh(parse_off(source, text)); }},
+      {"ply", [](std::string_view text) { check_mesh(parse_ply(source, text)); }},
       {"scene", [](std::string_view text) { check_scene(parse_scene(source, text)); }},
+      {"stl", [](std::string_view text) { check_mesh(parse_stl(source, text)); }},
       {"vega", [](std::string_view text) { check_tets(parse_vega(source, text)); }},
       {"vtk", [](std::string_view text) { check_any(parse_vtk(source, text)); }},
+      {"vtk_xml", [](std::string_view text) { check_any(parse_vtk_xml(source, text)); }},
   };
   return all;
 }

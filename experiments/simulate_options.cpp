@@ -78,7 +78,11 @@ Subcommand simulate_command() {
            Option("--explain", &o->explain,
                   "first say what the scene has, what each part costs a step, and what was left out"),
            Option("--output", &o->output, "folder for the frames (matrices: trajectory.csv)").shown_as("DIR"),
-           Option("--format", &o->format, "of the frames: obj or vtk").one_of({"obj", "vtk"}).with_default(),
+           Option("--format", &o->format,
+                  "of the frames: obj, ply (binary), vtk (legacy), or pvd (VTK's XML and, for ParaView, a "
+                  "series with times)")
+               .one_of({"obj", "ply", "pvd", "vtk"})
+               .with_default(),
            Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
            Option("--solver", &o->solver,
                   "of implicit methods' linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")

@@ -73,7 +73,9 @@ bool amplifies_without_need(const Method& method) {
 
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
   std::vector<Option> all{
-      Option("INPUT", &input.file, "SCENE.json, a surface .obj, tetrahedra .veg, or either .msh, .vtk")
+      Option(
+          "INPUT", &input.file,
+          "SCENE.json, a surface .obj, .off, .ply, .stl, .vtp, tetrahedra .veg, or either .msh, .vtk, .vtu")
           .shown_as("FILE"),
       Option("--grid", &input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
           .shown_as("NxM"),
@@ -96,7 +98,8 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
              "stiffness against bending, of springs in N/m, of triangles in N·m")
           .shown_as("[N/m]"),
       Option("--pin", &input.pin, "none, first-row, corners or particle numbers like 0,5-9").shown_as("SPEC"),
-      Option("--stiffness", &input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
+      Option("--stiffness", &input.stiffness,
+             "K: Matrix Market, Harwell- or Rutherford-Boeing, SciPy .npz, PETSc, Abaqus")
           .shown_as("FILE"),
       Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),
       Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE"),

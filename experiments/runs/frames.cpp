@@ -1,6 +1,11 @@
 #include "experiments/runs/frames.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
+#include <map>
 
 #include "experiments/command/output.h"
 #include "solvers/io/input_error.h"
@@ -33,10 +38,84 @@ void write_vtk(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
   }
 }
 
+// Of a number the bytes, the least first.
+template <class Number>
+void write_bytes(std::ostream& out, Number number) {
+  char bytes[sizeof number];
+  std::memcpy(bytes, &number, sizeof number);
+  if (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof number);
+  out.write(bytes, sizeof number);
+}
+
+void write_positions(std::ostream& out, const std::vector<Eigen::Vector3d>& positions) {
+  for (const Eigen::Vector3d& p : positions)
+    for (const double x : p) write_bytes(out, x);
+}
+
+void write_ply(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<std::vector<int>>& faces) {
+  constexpr std::size_t most = 255;  // of a byte
+  const bool small = std::ranges::all_of(faces, [](const auto& face) { return face.size() <= most; });
+  out << "ply\nformat binary_little_endian 1.0\ncomment springstab\nelement vertex " << positions.size()
+      << "\nproperty double x\nproperty double y\nproperty double z\nelement face " << faces.size()
+      << "\nproperty list " << (small ? "uchar" : "uint") << " int vertex_indices\nend_header\n";
+  write_positions(out, positions);
+  for (const std::vector<int>& face : faces) {
+    if (small)
+      write_bytes(out, static_cast<std::uint8_t>(face.size()));
+    else
+      write_bytes(out, static_cast<std::uint32_t>(face.size()));
+    for (const int i : face) write_bytes(out, static_cast<std::int32_t>(i));
+  }
+}
+
+// VTK's XML, with the numbers as they are behind it: each array has its length in bytes before it.
+void write_vtp(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
+               const std::vector<std::vector<int>>& faces) {
+  std::uint64_t corners = 0;
+  for (const std::vector<int>& face : faces) corners += face.size();
+  const std::uint64_t bytes_of_positions = 24 * positions.size(), bytes_of_corners = 8 * corners,
+                      first_corner = 8 + bytes_of_positions, first_end = first_corner + 8 + bytes_of_corners;
+  const auto array = [&](const char* type, const char* name, const char* more, std::uint64_t offset) {
+    out << "<DataArray type=\"" << type << "\" Name=\"" << name << '"' << more
+        << " format=\"appended\" offset=\"" << offset << "\"/>\n";
+  };
+  out << "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+         "<PolyData>\n<Piece NumberOfPoints=\""
+      << positions.size() << "\" NumberOfPolys=\"" << faces.size() << "\">\n<Points>\n";
+  array("Float64", "Points", " NumberOfComponents=\"3\"", 0);
+  out << "</Points>\n<Polys>\n";
+  array("Int64", "connectivity", "", first_corner);
+  array("Int64", "offsets", "", first_end);
+  out << "</Polys>\n</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_";
+  write_bytes(out, bytes_of_positions);
+  write_positions(out, positions);
+  write_bytes(out, bytes_of_corners);
+  for (const std::vector<int>& face : faces)
+    for (const int i : face) write_bytes(out, static_cast<std::int64_t>(i));
+  write_bytes(out, std::uint64_t{8 * faces.size()});
+  std::int64_t end = 0;
+  for (const std::vector<int>& face : faces) write_bytes(out, end += static_cast<std::int64_t>(face.size()));
+  out << "\n</AppendedData>\n</VTKFile>\n";
+}
+
 }  // namespace
 
 std::string frame_path(const std::string& folder, const std::string& format, int frame) {
-  return folder + text("/frame_%05d.%s", frame, format.c_str());
+  return folder + text("/frame_%05d.%s", frame, format == "pvd" ? "vtp" : format.c_str());
+}
+
+void write_series(const std::string& folder, const std::string& format, const std::vector<double>& times) {
+  if (format != "pvd") return;
+  OutputFile file(folder + "/frames.pvd");
+  file.stream() << "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+  for (std::size_t frame = 0; frame < times.size(); ++frame)
+    file.stream()
+        << "<DataSet timestep=\"" << times[frame] << "\" file=\""
+        << std::filesystem::path(frame_path(folder, format, static_cast<int>(frame))).filename().string()
+        << "\"/>\n";
+  file.stream() << "</Collection>\n</VTKFile>\n";
+  file.commit();
 }
 
 void expect_frame(const std::string& folder, const std::string& format, int frame) {
@@ -48,7 +127,9 @@ void expect_frame(const std::string& folder, const std::string& format, int fram
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces) {
   OutputFile file(frame_path(folder, format, frame));
-  (format == "vtk" ? write_vtk : write_obj)(file.stream(), positions, faces);
+  static const std::map<std::string, decltype(&write_obj)> writers{
+      {"obj", write_obj}, {"ply", write_ply}, {"pvd", write_vtp}, {"vtk", write_vtk}};
+  writers.at(format)(file.stream(), positions, faces);
   file.commit();
 }
 

@@ -1,4 +1,4 @@
-// Frames of a run, one file each: a mesh as OBJ or legacy VTK, or a row of a CSV file for matrices.
+// Frames of a run, one file each: a mesh as OBJ, PLY, or VTK of either family.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,10 +7,14 @@
 
 namespace springstab {
 
-/// DIR/frame_00012.obj or .vtk: positions of all particles and the faces of the mesh.
-/// Throws InputError if it cannot be written.
+/// DIR/frame_00012.obj, .ply or .vtk, or of the format pvd .vtp: positions of all particles and the faces of
+/// the mesh. Throws InputError if it cannot be written.
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces);
+
+/// DIR/frames.pvd, which tells VTK's programs the time [s] of each frame; nothing of other formats. Throws
+/// InputError if it cannot be written.
+void write_series(const std::string& folder, const std::string& format, const std::vector<double>& times);
 
 /// Throws InputError unless such a file is there.
 void expect_frame(const std::string& folder, const std::string& format, int frame);

@@ -79,9 +79,9 @@ Subcommand simulate_command() {
                   "first say what the scene has, what each part costs a step, and what was left out"),
            Option("--output", &o->output, "folder for the frames (matrices: trajectory.csv)").shown_as("DIR"),
            Option("--format", &o->format,
-                  "of the frames: obj, ply (binary), vtk (legacy), or pvd (VTK's XML and, for ParaView, a "
-                  "series with times)")
-               .one_of({"obj", "ply", "pvd", "vtk"})
+                  "of the frames: obj, ply (binary), vtk (legacy), pvd (VTK's XML, and a series with times "
+                  "for ParaView) or gltf (one animation)")
+               .one_of({"gltf", "obj", "ply", "pvd", "vtk"})
                .with_default(),
            Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
            Option("--solver", &o->solver,

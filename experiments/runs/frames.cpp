@@ -8,6 +8,7 @@
 #include <map>
 
 #include "experiments/command/output.h"
+#include "experiments/runs/gltf.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -102,10 +103,18 @@ void write_vtp(std::ostream& out, const std::vector<Eigen::Vector3d>& positions,
 }  // namespace
 
 std::string frame_path(const std::string& folder, const std::string& format, int frame) {
-  return folder + text("/frame_%05d.%s", frame, format == "pvd" ? "vtp" : format.c_str());
+  const std::string suffix = format == "pvd" ? "vtp" : format == "gltf" ? "bin" : format;
+  return folder + text("/frame_%05d.%s", frame, suffix.c_str());
 }
 
-void write_series(const std::string& folder, const std::string& format, const std::vector<double>& times) {
+void write_series(const std::string& folder, const std::string& format, const std::vector<double>& times,
+                  const std::vector<std::vector<int>>& faces) {
+  if (format == "gltf") {
+    std::vector<std::string> frames;
+    for (std::size_t i = 0; i < times.size(); ++i)
+      frames.push_back(frame_path(folder, format, static_cast<int>(i)));
+    write_gltf(folder, frames, times, faces);
+  }
   if (format != "pvd") return;
   OutputFile file(folder + "/frames.pvd");
   file.stream() << "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
@@ -129,7 +138,10 @@ void write_frame(const std::string& folder, const std::string& format, int frame
   OutputFile file(frame_path(folder, format, frame));
   static const std::map<std::string, decltype(&write_obj)> writers{
       {"obj", write_obj}, {"ply", write_ply}, {"pvd", write_vtp}, {"vtk", write_vtk}};
-  writers.at(format)(file.stream(), positions, faces);
+  if (format == "gltf")
+    file.stream() << gltf_frame(frame > 0 ? frame_path(folder, format, 0) : "", positions);
+  else
+    writers.at(format)(file.stream(), positions, faces);
   file.commit();
 }
 

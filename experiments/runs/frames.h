@@ -7,14 +7,15 @@
 
 namespace springstab {
 
-/// DIR/frame_00012.obj, .ply or .vtk, or of the format pvd .vtp: positions of all particles and the faces of
-/// the mesh. Throws InputError if it cannot be written.
+/// DIR/frame_00012.obj, .ply or .vtk, of the format pvd .vtp, of gltf .bin: positions of all particles and
+/// the faces of the mesh. Throws InputError if it cannot be written.
 void write_frame(const std::string& folder, const std::string& format, int frame,
                  const std::vector<Eigen::Vector3d>& positions, const std::vector<std::vector<int>>& faces);
 
-/// DIR/frames.pvd, which tells VTK's programs the time [s] of each frame; nothing of other formats. Throws
-/// InputError if it cannot be written.
-void write_series(const std::string& folder, const std::string& format, const std::vector<double>& times);
+/// What makes one animation of the frames of the format pvd (DIR/frames.pvd) or gltf (DIR/frames.gltf), with
+/// the time [s] of each; nothing of other formats. Throws InputError if it cannot be written.
+void write_series(const std::string& folder, const std::string& format, const std::vector<double>& times,
+                  const std::vector<std::vector<int>>& faces);
 
 /// Throws InputError unless such a file is there.
 void expect_frame(const std::string& folder, const std::string& format, int frame);

@@ -10,6 +10,8 @@
 namespace springstab {
 
 #ifdef SPRINGSTAB_ZLIB
+bool has_zlib() { return true; }
+
 std::string inflated(std::string_view bytes, std::size_t size, Deflated form, const Location& at) {
   constexpr std::size_t best_ratio = 1032, most = std::numeric_limits<int>::max();
   const auto wrong = [&](const std::string& what) {
@@ -32,6 +34,8 @@ std::string inflated(std::string_view bytes, std::size_t size, Deflated form, co
   return out;
 }
 #else
+bool has_zlib() { return false; }
+
 std::string inflated(std::string_view, std::size_t, Deflated, const Location& at) {
   at.fail(
       "the data are compressed, which this program was built without, expected one built with zlib (Debian: "

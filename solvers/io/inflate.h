@@ -10,6 +10,9 @@ namespace springstab {
 
 enum class Deflated { raw, with_zlib_header };
 
+/// Whether this program was built with zlib.
+bool has_zlib();
+
 /// The `size` bytes that were deflated to these. Throws InputError where they are not that, and before
 /// anything is allocated where they cannot be: deflate packs at most 1032 to one. Likewise where this program
 /// was built without zlib.

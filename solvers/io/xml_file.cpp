@@ -16,6 +16,8 @@ std::string_view XmlElement::attribute(std::string_view key, std::string_view ot
 }
 
 #ifdef SPRINGSTAB_EXPAT
+bool has_expat() { return true; }
+
 namespace {
 
 class XmlReader {
@@ -113,6 +115,8 @@ XmlFile read_xml(std::string_view source, std::string_view text, const std::stri
   return XmlReader(source, text, last).read();
 }
 #else
+bool has_expat() { return false; }
+
 XmlFile read_xml(std::string_view source, std::string_view, const std::string&) {
   Location{source}.fail(
       "is XML, which this program was built without, expected one built with Expat (Debian: libexpat1-dev)");

@@ -29,6 +29,9 @@ struct XmlFile {
   std::string_view rest;             // behind the tag of the element at which reading stopped
 };
 
+/// Whether this program was built with Expat.
+bool has_expat();
+
 /// Source and text must outlive what it returns. Throws InputError, with the line, where there is no
 /// well-formed XML up to the first element of the name `last` or to the end, and where this program was built
 /// without Expat. A document type, which may define what the text means, is refused.

@@ -1,6 +1,7 @@
 # Found by find_package(springstab [COMPONENTS solvers analysis]): defines springstab::solvers, and
 # springstab::analysis unless the components leave it out. The libraries are static, so what they link privately
-# is looked up here as well: Eigen for both, GSL, ARPACK and, where it was there, CHOLMOD for analysis alone.
+# is looked up here as well: Eigen and, where they were there, Expat and zlib for both; GSL, ARPACK and, where it
+# was there, CHOLMOD for analysis alone.
 include(CMakeFindDependencyMacro)
 set(springstab_wanted ${springstab_FIND_COMPONENTS})
 if(NOT springstab_wanted)
@@ -8,6 +9,12 @@ if(NOT springstab_wanted)
 endif()
 
 find_dependency(Eigen3 3.4)
+if(@SPRINGSTAB_EXPAT_IS_LINKED@)
+  find_dependency(EXPAT)
+endif()
+if(@SPRINGSTAB_ZLIB_IS_LINKED@)
+  find_dependency(ZLIB)
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/springstab_solversTargets.cmake)
 set(springstab_solvers_FOUND TRUE)
 if(analysis IN_LIST springstab_wanted)

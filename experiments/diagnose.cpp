@@ -135,7 +135,7 @@ Subcommand diagnose_command() {
   const auto o = std::make_shared<DiagnoseOptions>();
   std::vector<Option> options{
       Option("FRAMES", &o->frames,
-             "folder of .obj, .vtk or .npy files, one a frame; or one .npy, (frames, vertices, 3)")
+             "folder of .obj, .ply, .vtk or .npy files, one a frame; or one .npy, (frames, vertices, 3)")
           .needed()
           .shown_as("PATH"),
       Option("--step", &o->step, "of the run, in seconds").needed().shown_as("H"),

@@ -26,6 +26,7 @@ namespace springstab {
 namespace {
 
 constexpr int most_frames = 10'000'000;
+constexpr int most_gltf_frames = 1000;  // it has a weight for each two of them
 constexpr int most_newton_steps = 100;
 
 void check(const CommonOptions& common, const SimulateOptions& options) {
@@ -47,6 +48,9 @@ void check(const CommonOptions& common, const SimulateOptions& options) {
     throw InputError("--newton", 0, text("is %d, expected 1 to %d", options.newton, most_newton_steps));
   if (options.frames < 1 || options.frames > most_frames)
     throw InputError("--frames", 0, text("is %d, expected 1 to %d", options.frames, most_frames));
+  if (options.format == "gltf" && options.frames > most_gltf_frames)
+    throw InputError("--frames", 0,
+                     text("is %d, expected at most %d with --format gltf", options.frames, most_gltf_frames));
   if (options.earlier.resume && options.output.empty()) throw InputError("--resume", 0, needs_output);
   if (options.keep_diverged && options.output.empty())
     throw InputError("--keep-diverged", 0, "needs --output, the folder for the frames");

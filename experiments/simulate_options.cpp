@@ -80,7 +80,11 @@ Subcommand simulate_command() {
            Option("--output", &o->output,
                   "folder for the frames and their energies, energy.csv (matrices: trajectory.csv has both)")
                .shown_as("DIR"),
-           Option("--format", &o->format, "of the frames: obj or vtk").one_of({"obj", "vtk"}).with_default(),
+           Option("--format", &o->format,
+                  "of the frames: obj, ply (binary), vtk (legacy), pvd (VTK's XML, and a series with times "
+                  "for ParaView) or gltf (one animation)")
+               .one_of({"gltf", "obj", "ply", "pvd", "vtk"})
+               .with_default(),
            Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
            Option("--solver", &o->solver,
                   "of implicit methods' linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")

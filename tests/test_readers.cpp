@@ -670,11 +670,12 @@ BOOST_AUTO_TEST_CASE(every_beginning_of_every_seed_reads_or_is_refused_with_a_li
         for (std::size_t length = 0; length < text.size(); ++length)
           BOOST_REQUIRE_NO_THROW(++(reads(reader, text.substr(0, length)) ? read : refused));
         const bool whole = reads(reader, text);
+        ++(whole ? read : refused);
+        if (text.find('\0') != text.npos) continue;  // no text, of which the following is true
         BOOST_TEST(reads(reader, with_crlf(text)) == whole);
         if (text.find('\r') == text.npos) BOOST_TEST(reads(reader, with_line_ends(text, "\r")) == whole);
         BOOST_TEST(reads(reader, "\xEF\xBB\xBF" + text) == whole);
         if (reader.name != "scene") BOOST_TEST(reads(reader, text + "\x1a") == whole);
-        ++(whole ? read : refused);
       }
     }
     BOOST_TEST_CONTEXT(reader.name) {

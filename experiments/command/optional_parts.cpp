@@ -1,6 +1,8 @@
 #include "experiments/command/optional_parts.h"
 
 #include "analysis/proofs/sparse_cholesky.h"
+#include "solvers/io/inflate.h"
+#include "solvers/io/xml_file.h"
 
 namespace springstab {
 
@@ -16,6 +18,8 @@ std::vector<OptionalPart> optional_parts() {
   constexpr bool sundials = false;
 #endif
   return {{"CHOLMOD, METIS and OpenBLAS", "proofs of large systems", has_cholmod()},
+          {"Expat", "VTK's XML files", has_expat()},
+          {"zlib", "compressed files", has_zlib()},
           {"Boost.odeint", "work-precision", odeint},
           {"SUNDIALS", "work-precision", sundials}};
 }

@@ -73,7 +73,9 @@ bool amplifies_without_need(const Method& method) {
 
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
   std::vector<Option> all{
-      Option("INPUT", &input.file, "SCENE.json, a surface .obj, tetrahedra .veg, or either .msh, .vtk")
+      Option(
+          "INPUT", &input.file,
+          "SCENE.json, a surface .obj, .off, .ply, .stl, .vtp, tetrahedra .veg, or either .msh, .vtk, .vtu")
           .shown_as("FILE"),
       Option("--grid", &input.grid, "N x M particles in the xz-plane; particle i*M + j at (j*s, 0, i*s)")
           .shown_as("NxM"),
@@ -97,10 +99,10 @@ std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
           .shown_as("[N/m]"),
       Option("--pin", &input.pin,
              "none, first-row, corners, particle numbers like 0,5-9, group:NAME or object:NAME of an OBJ "
-             "file, or "
-             "box:x0:x1,y0:y1,z0:z1 [m]")
+             "file, or box:x0:x1,y0:y1,z0:z1 [m]")
           .shown_as("SPEC"),
-      Option("--stiffness", &input.stiffness, "K: Matrix Market, Harwell-Boeing or Rutherford-Boeing")
+      Option("--stiffness", &input.stiffness,
+             "K: Matrix Market, Harwell- or Rutherford-Boeing, SciPy .npz, PETSc, Abaqus")
           .shown_as("FILE"),
       Option("--mass", &input.mass, "M (default: the unit matrix)").shown_as("FILE"),
       Option("--damping-matrix", &input.damping_matrix, "D (default: none)").shown_as("FILE"),

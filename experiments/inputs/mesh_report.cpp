@@ -2,6 +2,8 @@
 
 #include <iostream>
 
+#include "solvers/io/input_error.h"
+
 namespace springstab {
 namespace {
 
@@ -18,29 +20,32 @@ class Counted {
   std::string list_;
 };
 
-void say(const std::string& kind, const std::string& place, const std::string& what) {
-  std::cerr << "springstab: " << kind << ": " << place << ": " << what << '\n';
+void say(const std::string& kind, const std::string& source, const std::string& what, long line = 0) {
+  std::cerr << "springstab: " << kind << ": " << place_of(source, line) << what << '\n';
 }
 
-void note(const MeshFile& file, const std::string& what) { say("note", file.path, what); }
+void note(const MeshFile& file, const std::string& what, long line = 0) {
+  say("note", file.path, what, line);
+}
 
 void print_texture_notes(const MeshFile& file) {
   if (!file.texture_map) return;
   const TextureMap& map = *file.texture_map;
-  const std::string face = file.path + ':' + std::to_string(map.line);
   if (file.rest_shape != RestShape::texture)
-    return say("note", face,
-               "this face has no area in the texture map, which is not used: all faces rest as they lie");
+    return note(file,
+                "this face has no area in the texture map, which is not used: all faces rest as they lie",
+                map.line);
   if (map.strained == 0) return;
   const std::string scale =
       map.unit == map.area_unit
           ? text("though the map has the mesh's area (texture_unit %.4g m)", map.unit)
           : text("at a texture_unit of %.4g m; the mesh's area asks for %.4g m", map.unit, map.area_unit);
-  say("warning", face,
+  say("warning", file.path,
       text("the cloth starts strained: %d of %d triangles differ from the texture map by more than a factor "
            "of %g in length, this face by %.4g, ",
            map.strained, map.triangles, straining_factor, map.largest_factor) +
-          scale + "; without texture coordinates (vt) faces rest as they lie");
+          scale + "; without texture coordinates (vt) faces rest as they lie",
+      map.line);
 }
 
 void print_unused_texture_unit(const Subject& subject) {
@@ -55,9 +60,10 @@ void print_unused_texture_unit(const Subject& subject) {
 Json texture_json(const MeshFile& file) {
   if (!file.texture_map) return nullptr;
   const TextureMap& map = *file.texture_map;
-  if (file.rest_shape != RestShape::texture) return {{"used", false}, {"line", map.line}};
+  const Json line = map.line > 0 ? Json(map.line) : Json();  // a binary file has none
+  if (file.rest_shape != RestShape::texture) return {{"used", false}, {"line", line}};
   return {{"used", true},
-          {"line", map.line},
+          {"line", line},
           {"texture_unit", number(map.unit)},
           {"area_unit", number(map.area_unit)},
           {"triangles", map.triangles},
@@ -74,7 +80,7 @@ void print_mesh_notes(const Subject& subject) {
   if (!subject.mesh_file()) return;
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;
-  for (const FileNote& n : file.notes) say("note", file.path + ':' + std::to_string(n.line), n.text);
+  for (const FileNote& n : file.notes) note(file, n.text, n.line);
   const std::string one = file.solid ? "tetrahedron" : "face", many = file.solid ? "tetrahedra" : "faces";
   Counted mended;
   mended.add(r.merged_vertices, "merged ", "duplicate vertex", "duplicate vertices");

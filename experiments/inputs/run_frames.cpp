@@ -1,6 +1,7 @@
 #include "experiments/inputs/run_frames.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <filesystem>
@@ -9,6 +10,8 @@
 
 #include "solvers/io/input_error.h"
 #include "solvers/io/npy.h"
+#include "solvers/io/ply.h"
+#include "solvers/io/ply_header.h"
 #include "solvers/io/text_file.h"
 
 namespace springstab {
@@ -73,6 +76,42 @@ FrameFile vtk_frame(const std::string& path) {
   return frame;
 }
 
+// Of the vertices x, y and z; what stands before them is skipped, what stands behind them not looked at.
+FrameFile ply_frame(const std::string& path) {
+  const std::string content = read_file(path, is_binary_ply);
+  PlyNumbers numbers(path, content);
+  FrameFile frame{{}, 3};
+  constexpr std::string_view axes = "xyz";
+  for (const PlyElement& element : numbers.elements()) {
+    const bool vertex = element.name == "vertex";
+    const auto has = [&](const char axis) {
+      return std::ranges::any_of(element.properties, [&](const PlyProperty& p) {
+        return !p.count && p.name == std::string(1, axis);
+      });
+    };
+    if (vertex && !std::ranges::all_of(axes, has))
+      element.at.fail("the vertices lack one of the properties x, y and z, expected all three");
+    numbers.expect_room(element);
+    for (long long i = 0; i < element.count; ++i) {
+      numbers.begin(element);
+      std::array<double, most_components> position{};
+      for (const PlyProperty& property : element.properties) {
+        const std::size_t axis = axes.find(property.name);
+        if (!property.count && property.name.size() == 1 && axis != axes.npos)
+          position[axis] = numbers.next(property.type, property.name);
+        else
+          for (long long left = property.count ? numbers.length(property) : 1; left > 0; --left)
+            numbers.next(property.type, property.name);
+      }
+      numbers.end(element);
+      if (vertex) frame.numbers.insert(frame.numbers.end(), position.begin(), position.end());
+    }
+    if (vertex) break;
+  }
+  if (frame.numbers.empty()) throw InputError(path, 0, "has no vertices, expected an element vertex");
+  return frame;
+}
+
 FrameFile npy_frame(const std::string& path) {
   NpyArray array = read_npy(path);
   const std::size_t dimensions = array.shape.size();
@@ -125,7 +164,7 @@ using FrameReader = FrameFile (*)(const std::string& path);
 // The files of the one kind that the folder has, and their reader.
 std::pair<std::vector<std::string>, FrameReader> frame_files(const std::string& folder) {
   static const std::map<std::string, FrameReader> readers{
-      {".NPY", npy_frame}, {".OBJ", obj_frame}, {".VTK", vtk_frame}};
+      {".NPY", npy_frame}, {".OBJ", obj_frame}, {".PLY", ply_frame}, {".VTK", vtk_frame}};
   std::map<std::string, std::vector<std::string>> found;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
@@ -133,11 +172,11 @@ std::pair<std::vector<std::string>, FrameReader> frame_files(const std::string& 
       found[suffix].push_back(entry.path().string());
   if (error)
     throw InputError(folder, 0, "cannot be read (" + error.message() + "), expected a folder of frames");
-  if (found.empty()) throw InputError(folder, 0, "has no frames, expected .obj, .vtk or .npy files");
+  if (found.empty()) throw InputError(folder, 0, "has no frames, expected .obj, .ply, .vtk or .npy files");
   if (found.size() > 1)
-    throw InputError(
-        folder, 0,
-        "has frames of " + std::to_string(found.size()) + " kinds, expected one of .obj, .vtk and .npy");
+    throw InputError(folder, 0,
+                     "has frames of " + std::to_string(found.size()) +
+                         " kinds, expected one of .obj, .ply, .vtk and .npy");
   auto& [suffix, files] = *found.begin();
   std::ranges::sort(files, in_order_of_numbers);
   return {std::move(files), readers.at(suffix)};

@@ -131,6 +131,13 @@ void Recorder::wait_for_frame() {
   if (writing_.valid()) writing_.get();
 }
 
+void Recorder::write_times() {
+  if (options_.output.empty() || !subject_.scene()) return;
+  std::vector<double> times;
+  for (const Frame& frame : frames_) times.push_back(frame.t);
+  write_series(options_.output, options_.format, times, subject_.faces());
+}
+
 void Recorder::flush() {
   wait_for_frame();
   if (csv_) csv_->keep();
@@ -145,6 +152,7 @@ Json Recorder::kept() {
   if (csv_) kept.update({{"csv_bytes", csv_->keep_on_disk()}, {"csv_hash", csv_hash_.hex()}});
   for (; subject_.scene() && on_disk_ < written(); ++on_disk_)
     sync_file(frame_path(options_.output, options_.format, on_disk_));
+  if (options_.format == "pvd") write_times();  // glTF's would read all frames
   sync_folder(options_.output);
   for (const auto& [t, state] : last_)
     kept["last"].push_back({t, std::vector<double>(state.x.begin(), state.x.end()),
@@ -155,6 +163,7 @@ Json Recorder::kept() {
 void Recorder::finish() {
   wait_for_frame();
   if (csv_) csv_->commit();
+  write_times();
   for (int frame = written(); frame < most_; ++frame)  // of what was undone and not reached again
     remove_frame(options_.output, options_.format, frame);
 }

@@ -47,6 +47,7 @@ class Recorder {
   void write_row(const std::string& row);
   void take_back_last();
   void wait_for_frame();
+  void write_times();
 
   // A hair early: the time of a step is a rounded sum.
   double next_time() const { return options_.duration * due_ / options_.frames * (1 - 1e-9); }

@@ -2,23 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
+
+#include "solvers/io/gmsh_binary.h"
+#include "solvers/io/gmsh_elements.h"
 
 namespace springstab {
 namespace {
 
 using Words = std::vector<std::string_view>;
 
-/// Element types: points and lines, of any order; and curved surfaces, which have nodes within their edges.
-constexpr auto gmsh_skipped = std::to_array<long long>({1, 8, 15, 26, 27, 28});
-constexpr auto gmsh_curved_surfaces = std::to_array<long long>({9, 10, 16, 20, 21, 22, 23, 24, 25});
-constexpr auto gmsh_curved_tetrahedra = std::to_array<long long>({11, 29, 30, 31});
-constexpr long long gmsh_triangle = 2, gmsh_quadrangle = 3, gmsh_tetrahedron = 4;
-
 class GmshReader {
  public:
-  GmshReader(const std::string& source, std::string_view text) : lines_(source, text), builder_(source) {}
+  GmshReader(const std::string& source, std::string_view text)
+      : source_(source), text_(text), lines_(source, text), builder_(source) {}
 
   AnyMesh read() {
     while (next_words()) {
@@ -34,8 +33,7 @@ class GmshReader {
       } else if (section == "$Elements" || section == "$ELM") {
         elements(section == "$ELM");
       } else {
-        while (next_words() && words_.front() != end) {
-        }
+        skip(end);
       }
       if (words_.empty() || words_.front() != end)
         lines_.at().fail("the section " + quoted(section) + " does not end here, expected " + quoted(end));
@@ -56,6 +54,13 @@ class GmshReader {
   /// The same within a section: then its end mark is not one of its lines.
   bool next_line() { return next_words() && !words_.front().starts_with("$E"); }
 
+  /// Steps to the end mark. What stands before it in a binary file need not be lines.
+  void skip(const std::string& end) {
+    if (order_) lines_.go_to(std::min(text_.find(end, lines_.position()), text_.size()));
+    while (next_words() && words_.front() != end) {
+    }
+  }
+
   void format() {
     if (!next_line()) return;
     const Location at = lines_.at();
@@ -68,7 +73,45 @@ class GmshReader {
     else if (words_[0] != "2" && !words_[0].starts_with("2."))
       at.fail("the format is version " + quoted(words_[0]) +
               ", expected 1, 2, 4.0 or 4.1 (gmsh -format msh41 writes it)");
-    if (words_[1] != "0") at.fail(binary_file_message("$MeshFormat"));
+    if (words_[1] != "0") binary_format(at);
+    next_words();
+  }
+
+  void binary_format(const Location& at) {
+    if (version_ == Version::v4_0) at.fail(binary_file_message("$MeshFormat"));
+    if (words_[1] != "1" || words_[2] != "8")
+      at.fail(quoted(lines_.line()) +
+              " is the format, expected a file type of 0 or 1 and numbers of 8 bytes");
+    order_ = std::endian::little;
+    from_binary([&](BinaryReader& bytes) {
+      const Location one_at = bytes.at();
+      const std::string_view one = bytes.take(4, "the number 1");
+      if (number_of<std::int32_t>(one, std::endian::big) == 1)
+        order_ = std::endian::big;
+      else if (number_of<std::int32_t>(one, std::endian::little) != 1)
+        one_at.fail("the number 1 is missing, expected it in the file's byte order");
+    });
+  }
+
+  /// What `read` finds behind the lines that were read; then it is at the end mark.
+  template <class Read>
+  void from_binary(const Read& read) {
+    BinaryReader bytes(source_, text_, *order_, lines_.position());
+    read(bytes);
+    lines_.go_to(bytes.position());
+  }
+
+  template <class Read, class Read2>
+  void binary_section(const std::string& things, const Read& read, const Read2& read_2) {
+    long long count = 0;
+    if (version_ != Version::v4_1) {
+      integers(1, "one number, of " + things);
+      count = count_of(lines_.at(), words_[0], things);
+    }
+    from_binary([&](BinaryReader& bytes) {
+      if (version_ == Version::v4_1) return read(bytes, builder_);
+      read_2(bytes, count, builder_);
+    });
     next_words();
   }
 
@@ -124,6 +167,7 @@ class GmshReader {
   }
 
   void nodes(bool with_parameters) {
+    if (order_) return binary_section("nodes", read_gmsh_nodes, read_gmsh_2_nodes);
     if (version_ == Version::v4_0)
       return blocks("nodes", [&](long long dimension, long long parametric, long long n) {
         for (long long i = 0; i < n; ++i) numbered_node(block_line("node"), parametric != 0 ? dimension : 0);
@@ -168,6 +212,7 @@ class GmshReader {
   /// Version 1: number type physical elementary nodes-count nodes...; 2: number type tags-count tags...
   /// nodes...; 4: number nodes..., of the type of the block.
   void elements(bool version_1) {
+    if (order_) return binary_section("elements", read_gmsh_elements, read_gmsh_2_elements);
     if (version_ != Version::up_to_2)
       return blocks("elements", [&](long long, long long type, long long n) {
         for (long long i = 0; i < n; ++i) element(block_line("element"), type, 1);
@@ -182,34 +227,40 @@ class GmshReader {
 
   void element(const Location& at, long long type, long long before) {
     at.integer(words_[0]);
-    if (is_among(gmsh_skipped, type)) return;
-    const std::string kind = "an element of type " + std::to_string(type);
-    const std::string order = ", which has nodes between its corners, expected first order (gmsh -order 1)";
-    if (is_among(gmsh_curved_surfaces, type)) return builder_.add_unusable_face(at, kind + order);
-    if (is_among(gmsh_curved_tetrahedra, type)) at.fail(kind + order);
-    if (type != gmsh_triangle && type != gmsh_quadrangle && type != gmsh_tetrahedron)
-      at.fail(kind + ", expected triangles, quadrangles or tetrahedra (types 2, 3 and 4)");
-    const long long corners = type == gmsh_triangle ? 3 : 4;
-    if (static_cast<long long>(words_.size()) - before != corners)
-      at.fail((type == gmsh_triangle     ? "a triangle of "
-               : type == gmsh_quadrangle ? "a quadrangle of "
-                                         : "a tetrahedron of ") +
-              std::to_string(words_.size()) + " words, expected " + std::to_string(before) + " and " +
-              std::to_string(corners) + " nodes");
+    const GmshShape shape = gmsh_shape(type, at);
     std::array<long long, 4> nodes{};
-    for (long long c = 0; c < corners; ++c)
-      nodes[c] = at.integer(words_[static_cast<std::size_t>(before + c)]);
-    if (type == gmsh_tetrahedron) return builder_.add_tet(nodes, at);
-    builder_.add_face({nodes.data(), static_cast<std::size_t>(corners)}, at);
+    long long corners = 0;
+    if (shape >= GmshShape::triangle) {
+      corners = gmsh_nodes(type);
+      if (static_cast<long long>(words_.size()) - before != corners)
+        at.fail((shape == GmshShape::triangle     ? "a triangle of "
+                 : shape == GmshShape::quadrangle ? "a quadrangle of "
+                                                  : "a tetrahedron of ") +
+                std::to_string(words_.size()) + " words, expected " + std::to_string(before) + " and " +
+                std::to_string(corners) + " nodes");
+      for (long long c = 0; c < corners; ++c)
+        nodes[c] = at.integer(words_[static_cast<std::size_t>(before + c)]);
+    }
+    add_gmsh_element(builder_, type, {nodes.data(), static_cast<std::size_t>(corners)}, at);
   }
 
+  const std::string& source_;
+  std::string_view text_;
   LineReader lines_;
   MeshBuilder builder_;
   Words words_;
   Version version_ = Version::up_to_2;
+  std::optional<std::endian> order_;  // of a binary file
 };
 
 }  // namespace
+
+bool is_binary_gmsh(std::string_view beginning) {
+  LineReader lines({}, beginning);
+  Words words;
+  return lines.next() && trimmed(lines.line()) == "$MeshFormat" && lines.next() &&
+         append_words(lines.line(), words) && words.size() == 3 && words[1] == "1";
+}
 
 AnyMesh parse_gmsh(const std::string& source, std::string_view text) {
   return GmshReader(source, text).read();

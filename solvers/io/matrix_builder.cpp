@@ -6,6 +6,8 @@
 #include <tuple>
 #include <utility>
 
+#include "solvers/io/input_error.h"
+
 namespace springstab {
 namespace {
 
@@ -46,8 +48,8 @@ void MatrixBuilder::check_duplicates(Duplicates duplicates) const {
     if (!same || (duplicates == Duplicates::summed && std::isfinite(sum + entry.value()))) continue;
     Location{source_, entry.line}.fail(
         "a second entry " + position(entry.row() + 1LL, entry.col() + 1LL) +
-        (symmetry_ == Symmetry::general ? "" : " or its mirror image") + " after that of line " +
-        std::to_string(before.line) +
+        (symmetry_ == Symmetry::general ? "" : " or its mirror image") +
+        (before.line == 0 ? "" : " after that of " + place_name(before.line)) +
         (duplicates == Duplicates::refused
              ? ", expected one entry per position (--sum-duplicates adds them up)"
              : ", expected that their sum fits in double precision"));
@@ -73,6 +75,16 @@ Eigen::SparseMatrix<double> MatrixBuilder::build(Duplicates duplicates) && {
   Eigen::SparseMatrix<double> matrix(rows_, columns_);
   matrix.setFromTriplets(entries_.begin(), entries_.end());
   return matrix;
+}
+
+void check_rows(const Location& at, int rows, int columns, long long entries) {
+  constexpr long long unquestioned = 1'000'000, rows_per_entry = 1000, largest = 50'000'000;
+  const long long n = std::max(rows, columns);
+  if (n > largest || (n > unquestioned && n / rows_per_entry > entries))
+    at.fail("a matrix of " + std::to_string(rows) + " by " + std::to_string(columns) + " with " +
+            std::to_string(entries) + " entries, expected at most " + std::to_string(largest) +
+            " rows and, beyond " + std::to_string(unquestioned) + ", an entry for every " +
+            std::to_string(rows_per_entry));
 }
 
 }  // namespace springstab

@@ -45,4 +45,8 @@ class MatrixBuilder {
   std::vector<Entry> entries_;
 };
 
+/// A header of a few bytes must not make anyone allocate gigabytes: a matrix of very many rows needs entries
+/// too, for its column pointers cost 4 bytes each. Fails where it has too few.
+void check_rows(const Location& at, int rows, int columns, long long entries);
+
 }  // namespace springstab

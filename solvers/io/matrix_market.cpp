@@ -101,21 +101,14 @@ Size parse_size(const Kind& kind, const Words& words, const Location& at) {
 }
 
 /// A size line of a few bytes must not make us allocate gigabytes. An entry takes at least three digits, two
-/// blanks and a line feed; in an array, a digit and a line feed. A matrix of very many rows needs entries
-/// too, for its column pointers cost 4 bytes each.
+/// blanks and a line feed; in an array, a digit and a line feed.
 void check_backed(const Kind& kind, const Size& size, std::size_t bytes_left, const Location& at) {
   const std::size_t bytes_per_entry = kind.coordinate ? 6 : 2;
   const auto most = static_cast<long long>((bytes_left + 1) / bytes_per_entry);  // the last LF may be missing
   if (size.entries < 0 || size.entries > most)
     at.fail("the size line announces " + std::to_string(size.entries) + " entries, expected at most the " +
             std::to_string(most) + " that the rest of the file has room for");
-  constexpr long long unquestioned = 1'000'000, rows_per_entry = 1000, largest = 50'000'000;
-  const long long n = std::max(size.rows, size.columns);
-  if (n > largest || (n > unquestioned && n / rows_per_entry > size.entries))
-    at.fail("a matrix of " + std::to_string(size.rows) + " by " + std::to_string(size.columns) + " with " +
-            std::to_string(size.entries) + " entries, expected at most " + std::to_string(largest) +
-            " rows and, beyond " + std::to_string(unquestioned) + ", an entry for every " +
-            std::to_string(rows_per_entry));
+  check_rows(at, size.rows, size.columns, size.entries);
 }
 
 }  // namespace

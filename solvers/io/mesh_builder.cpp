@@ -13,8 +13,8 @@ MeshBuilder::MeshBuilder(std::string_view source) : source_(source) {}
 void MeshBuilder::add_vertex(long long number, const Eigen::Vector3d& position, const Location& at) {
   const auto [same, added] = vertex_.emplace(number, static_cast<int>(vertices_.size()));
   if (!added)
-    at.fail("vertex " + std::to_string(number) + " is there a second time (it stands on line " +
-            std::to_string(vertex_line_[same->second]) + " too), expected each number once");
+    at.fail("vertex " + std::to_string(number) + " is there a second time (it stands on " +
+            place_name(vertex_line_[same->second]) + " too), expected each number once");
   vertices_.push_back(position);
   vertex_line_.push_back(at.line);
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <utility>
 
+#include "solvers/io/binary_reader.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/text_file.h"
 
@@ -25,7 +25,7 @@ std::string_view npy_value(const Location& at, std::string_view header, const st
   return rest.substr(std::min(rest.find_first_not_of(' '), rest.size()));
 }
 
-std::vector<long long> npy_shape(const Location& at, std::string_view value) {
+std::vector<long long> npy_shape(const Location& at, std::string_view value, long long least) {
   const std::size_t end = value.find(')');
   if (!value.starts_with('(') || end == std::string_view::npos)
     at.fail("the shape " + quoted(value) + " is no tuple, expected one like (10, 3)");
@@ -37,22 +37,11 @@ std::vector<long long> npy_shape(const Location& at, std::string_view value) {
   long long count = 1;
   for (const std::string_view word : words) {
     shape.push_back(at.integer(word));
-    if (shape.back() < 1 || count > std::numeric_limits<int>::max() / shape.back())
+    if (shape.back() < least || count > std::numeric_limits<int>::max() / std::max(shape.back(), 1LL))
       at.fail("the shape (" + list + ") has " + quoted(word) + ", expected 1 to 2^31 - 1 numbers in all");
     count *= shape.back();
   }
   return shape;
-}
-
-template <class Float, class Bits>
-double npy_number(const char* from, bool swapped) {
-  Bits bits;
-  std::memcpy(&bits, from, sizeof bits);
-  if (swapped) {
-    auto* bytes = reinterpret_cast<unsigned char*>(&bits);
-    std::reverse(bytes, bytes + sizeof bits);
-  }
-  return std::bit_cast<Float>(bits);
 }
 
 // Where the array begins; `header` is set to what stands before.
@@ -70,31 +59,109 @@ std::size_t npy_data(const Location& at, std::string_view bytes, std::string_vie
   return begin + length;
 }
 
+struct NpyView {
+  char kind;  // f, i, u, b; S and U of strings; c and others
+  std::size_t size;
+  std::endian order;
+  std::string_view type;  // as it stands there
+  std::vector<long long> shape;
+  std::string_view data;
+};
+
+NpyView npy_view(const Location& at, std::string_view bytes, long long least) {
+  std::string_view header;
+  NpyView view{};
+  view.data = bytes.substr(npy_data(at, bytes, header));
+  view.type = npy_value(at, header, "descr").substr(0, 5);
+  const bool known = view.type.size() == 5 && view.type[4] == '\'' &&
+                     std::string_view("<>=|").find(view.type[1]) != std::string_view::npos;
+  view.kind = known ? view.type[2] : '?';
+  view.size =
+      known && view.type[3] > '0' && view.type[3] <= '9' ? static_cast<std::size_t>(view.type[3] - '0') : 0;
+  const char other = std::endian::native == std::endian::little ? '>' : '<';
+  const std::endian swapped =
+      std::endian::native == std::endian::little ? std::endian::big : std::endian::little;
+  view.order = known && view.type[1] == other ? swapped : std::endian::native;
+  if (!npy_value(at, header, "fortran_order").starts_with("False"))
+    at.fail("is in Fortran's order, expected C's: np.ascontiguousarray(a)");
+  view.shape = npy_shape(at, npy_value(at, header, "shape"), least);
+  return view;
+}
+
+/// How many; as many bytes must be there.
+std::size_t npy_count(const Location& at, const NpyView& view, std::size_t size) {
+  std::size_t count = 1;
+  for (const long long length : view.shape) count *= static_cast<std::size_t>(length);
+  if (view.data.size() != count * size)
+    at.fail("has " + std::to_string(view.data.size()) + " bytes of numbers, expected " +
+            std::to_string(count * size));
+  return count;
+}
+
+/// Of real numbers, integers or truth values.
+NumberType npy_type(const Location& at, const NpyView& view, bool real) {
+  using enum NumberType;
+  const auto is = [&](std::string_view kinds, std::size_t size) {
+    return kinds.find(view.kind) != kinds.npos && view.size == size;
+  };
+  if (real && is("f", 4)) return f32;
+  if (real && is("f", 8)) return f64;
+  if (is("i", 1)) return i8;
+  if (is("ub", 1)) return u8;
+  if (is("i", 2)) return i16;
+  if (is("u", 2)) return u16;
+  if (is("i", 4)) return i32;
+  if (is("u", 4)) return u32;
+  if (is("i", 8)) return i64;
+  if (is("u", 8)) return u64;
+  at.fail("has numbers of the type " + quoted(view.type) + ", expected " +
+          (real ? "real numbers of 4 or 8 bytes, or integers" : "integers"));
+}
+
 }  // namespace
 
 NpyArray parse_npy(const std::string& source, std::string_view bytes) {
   const Location at{source, 0};
-  std::string_view header;
-  const std::string_view data = bytes.substr(npy_data(at, bytes, header));
-  const std::string_view type = npy_value(at, header, "descr").substr(0, 5);
-  const bool wide = type.substr(2) == "f8'", known = wide || type.substr(2) == "f4'";
-  if (type.size() < 5 || !known || (type[1] != '<' && type[1] != '>' && type[1] != '='))
-    at.fail("has numbers of the type " + quoted(type) + ", expected '<f8', '<f4', '>f8' or '>f4'");
-  if (!npy_value(at, header, "fortran_order").starts_with("False"))
-    at.fail("is in Fortran's order, expected C's: np.ascontiguousarray(a)");
-  NpyArray array{npy_shape(at, npy_value(at, header, "shape")), {}};
-  std::size_t count = 1;
-  for (const long long length : array.shape) count *= static_cast<std::size_t>(length);
-  const std::size_t size = wide ? 8 : 4;
-  if (data.size() != count * size)
-    at.fail("has " + std::to_string(data.size()) + " bytes of numbers, expected " +
-            std::to_string(count * size));
-  const bool swapped = type[1] == (std::endian::native == std::endian::little ? '>' : '<');
-  array.values.resize(count);
-  for (std::size_t i = 0; i < count; ++i)
-    array.values[i] = wide ? npy_number<double, std::uint64_t>(data.data() + i * size, swapped)
-                           : npy_number<float, std::uint32_t>(data.data() + i * size, swapped);
+  NpyView view = npy_view(at, bytes, 1);
+  if (view.kind != 'f' || (view.size != 4 && view.size != 8) || view.type[1] == '|')
+    at.fail("has numbers of the type " + quoted(view.type) + ", expected '<f8', '<f4', '>f8' or '>f4'");
+  NpyArray array{std::move(view.shape), {}};
+  view.shape = array.shape;
+  array.values.resize(npy_count(at, view, view.size));
+  BinaryReader reader(source, view.data, view.order);
+  for (double& value : array.values) value = reader.number(npy_type(at, view, true), "");
   return array;
+}
+
+std::vector<double> npy_numbers(const std::string& source, std::string_view bytes) {
+  const Location at{source, 0};
+  const NpyView view = npy_view(at, bytes, 0);
+  const NumberType type = npy_type(at, view, true);
+  std::vector<double> values(npy_count(at, view, view.size));
+  BinaryReader reader(source, view.data, view.order);
+  for (double& value : values) value = reader.number(type, "");
+  return values;
+}
+
+std::vector<long long> npy_integers(const std::string& source, std::string_view bytes) {
+  const Location at{source, 0};
+  const NpyView view = npy_view(at, bytes, 0);
+  const NumberType type = npy_type(at, view, false);
+  std::vector<long long> values(npy_count(at, view, view.size));
+  BinaryReader reader(source, view.data, view.order);
+  for (long long& value : values) value = reader.integer(type, "");
+  return values;
+}
+
+std::string npy_letters(const std::string& source, std::string_view bytes) {
+  const Location at{source, 0};
+  const NpyView view = npy_view(at, bytes, 0);
+  if (view.kind != 'S' && view.kind != 'U')
+    at.fail("has the type " + quoted(view.type) + ", expected a string of at most nine letters");
+  npy_count(at, view, view.kind == 'U' ? 4 * view.size : view.size);
+  std::string letters(view.data);
+  std::erase(letters, '\0');  // a letter of kind U has four bytes
+  return letters;
 }
 
 NpyArray read_npy(const std::string& path) {

@@ -20,4 +20,12 @@ NpyArray parse_npy(const std::string& source, std::string_view bytes);
 
 NpyArray read_npy(const std::string& path);
 
+/// Arrays of one dimension, as archives have them; they may be empty. Numbers: real ones, integers or truth
+/// values. Throw InputError likewise.
+std::vector<double> npy_numbers(const std::string& source, std::string_view bytes);
+std::vector<long long> npy_integers(const std::string& source, std::string_view bytes);
+
+/// The ASCII letters of an array of one string.
+std::string npy_letters(const std::string& source, std::string_view bytes);
+
 }  // namespace springstab

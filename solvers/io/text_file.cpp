@@ -54,6 +54,10 @@ bool is_tiny(std::string_view number) {
 }  // namespace
 
 std::string read_text_file(const std::string& path) {
+  return read_file(path, [](std::string_view) { return false; });
+}
+
+std::string read_file(const std::string& path, bool (*is_binary)(std::string_view)) {
   const auto refuse = [&path](const std::string& why) {
     throw InputError(path, 0, why + ", expected a text file");
   };
@@ -78,11 +82,14 @@ std::string read_text_file(const std::string& path) {
     refuse("is a device");
 
   std::string text;
+  bool binary = false;
   std::array<char, 1 << 16> buffer{};
   while (const std::size_t read = std::fread(buffer.data(), 1, buffer.size(), file.get())) {
     const std::size_t before = text.size();
     text.append(buffer.data(), read);
     check_size(text.size());
+    if (before == 0) binary = is_binary(text);
+    if (binary) continue;
     if (const std::size_t zero = text.find('\0', before); zero != text.npos) {
       const long lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
       Location{path, 1 + lines}.fail(binary_file_message(text));
@@ -100,11 +107,10 @@ void Location::fail(const std::string& message) const {
 
 std::string binary_file_message(std::string_view beginning) {
   const auto begins = [&](std::string_view magic) { return beginning.starts_with(magic); };
-  const std::string_view remedy =
-      begins("$MeshFormat")      ? "`gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
-      : begins("# vtk DataFile") ? "ParaView's file type ASCII or VTK's SetFileTypeToASCII() saves it"
-      : begins(gzip)             ? "`gunzip` unpacks it"
-                                 : "";
+  const std::string_view remedy = begins("$MeshFormat")
+                                      ? "`gmsh FILE -save -setnumber Mesh.Binary 0 -o NEW.msh` writes it"
+                                  : begins(gzip) ? "`gunzip` unpacks it"
+                                                 : "";
   return remedy.empty() ? "a zero byte, expected text in ASCII or UTF-8"
                         : "the file is binary, expected text: " + std::string(remedy);
 }
@@ -189,20 +195,29 @@ bool append_words(std::string_view line, std::vector<std::string_view>& words, c
   }
 }
 
-LineReader::LineReader(std::string_view source, std::string_view text) : rest_(text), at_{source, 0} {
+LineReader::LineReader(std::string_view source, std::string_view text)
+    : text_(text), rest_(text), at_{source, 0} {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
-  if (rest_.ends_with('\x1a')) rest_.remove_suffix(1);  // how DOS ends a file
+}
+
+void LineReader::go_to(std::size_t position) {
+  rest_ = text_.substr(position);
+  has_lines_ = false;
+  at_.line = at_byte(position);
 }
 
 bool LineReader::next() {
-  if (rest_.empty()) return false;
+  constexpr char end_of_file = '\x1a';  // how DOS ends one
+  if (rest_.empty() || (rest_.size() == 1 && rest_[0] == end_of_file)) return false;
+  if (!has_lines_) at_.line = at_byte(position());
   const auto ends_line = [](char c) { return c == '\n' || c == '\r'; };
   const auto end = static_cast<std::size_t>(std::ranges::find_if(rest_, ends_line) - rest_.begin());
   line_ = rest_.substr(0, end);
   const bool two = rest_.substr(end).starts_with("\r\n");
   rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
-  ++at_.line;
+  if (rest_.empty() && line_.ends_with(end_of_file)) line_.remove_suffix(1);
+  if (has_lines_) ++at_.line;
   return true;
 }
 

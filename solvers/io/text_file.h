@@ -16,11 +16,16 @@ namespace springstab {
 /// within a second.
 std::string read_text_file(const std::string& path);
 
+/// The same, but with zero bytes where the file's beginning (64 KiB, or all of it) shows a binary format that
+/// the caller reads.
+std::string read_file(const std::string& path, bool (*is_binary)(std::string_view beginning));
+
 /// "the file is binary, expected text: ..." with what makes text of it, where its beginning tells the format;
 /// else that it has a zero byte.
 std::string binary_file_message(std::string_view beginning);
 
-/// A line (from 1) of a source; what is read from it fails with an InputError that names it.
+/// A line (from 1) of a source, or at_byte() of a binary one; what is read from it fails with an InputError
+/// that names it.
 struct Location {
   std::string_view source;
   long line = 0;
@@ -74,9 +79,15 @@ class LineReader {
   Location at() const { return at_; }
   std::size_t bytes_left() const { return rest_.size(); }
 
+  /// How many bytes of the text lie before what comes next.
+  std::size_t position() const { return text_.size() - rest_.size(); }
+  /// Goes on there, behind what is no text: from then on places are bytes.
+  void go_to(std::size_t position);
+
  private:
-  std::string_view rest_, line_;
+  std::string_view text_, rest_, line_;
   Location at_;
+  bool has_lines_ = true;
 };
 
 }  // namespace springstab

@@ -7,14 +7,21 @@
 #include <stdexcept>
 
 #include "experiments/inputs/scene_description.h"
+#include "solvers/io/abaqus.h"
 #include "solvers/io/gmsh.h"
 #include "solvers/io/harwell_boeing.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_market.h"
 #include "solvers/io/mesh_builder.h"
+#include "solvers/io/npz.h"
 #include "solvers/io/obj.h"
+#include "solvers/io/off.h"
+#include "solvers/io/petsc.h"
+#include "solvers/io/ply.h"
+#include "solvers/io/stl.h"
 #include "solvers/io/vega.h"
 #include "solvers/io/vtk.h"
+#include "solvers/io/vtk_xml.h"
 
 namespace springstab::test {
 namespace {
@@ -43,7 +50,7 @@ void check_matrix(const Eigen::SparseMatrix<double>& matrix) {
 
 void check_notes(const std::vector<FileNote>& notes) {
   for (const FileNote& note : notes)
-    require(note.line > 0 && !note.text.empty() &&
+    require(note.line != 0 && !note.text.empty() &&
                 std::ranges::none_of(note.text, [](unsigned char c) { return c < ' ' || c == 127; }),
             "a note has a line and is printable");
 }
@@ -116,13 +123,20 @@ void check_refusal(std::string_view message, std::string_view text) {
 
 const std::vector<Reader>& readers() {
   static const std::vector<Reader> all{
+      {"abaqus", [](std::string_view text) { check_matrix(parse_abaqus(source, text)); }},
       {"gmsh", [](std::string_view text) { check_any(parse_gmsh(source, text)); }},
       {"harwell_boeing", [](std::string_view text) { check_matrix(parse_harwell_boeing(source, text)); }},
       {"matrix_market", [](std::string_view text) { check_matrix(parse_matrix_market(source, text)); }},
+      {"npz", [](std::string_view text) { check_matrix(parse_npz(source, text)); }},
       {"obj", [](std::string_view text) { check_mesh(parse_obj(source, text)); }},
+      {"off", [](std::string_view text) { check_mesh(parse_off(source, text)); }},
+      {"petsc", [](std::string_view text) { check_matrix(parse_petsc(source, text)); }},
+      {"ply", [](std::string_view text) { check_mesh(parse_ply(source, text)); }},
       {"scene", [](std::string_view text) { check_scene(parse_scene(source, text)); }},
+      {"stl", [](std::string_view text) { check_mesh(parse_stl(source, text)); }},
       {"vega", [](std::string_view text) { check_tets(parse_vega(source, text)); }},
       {"vtk", [](std::string_view text) { check_any(parse_vtk(source, text)); }},
+      {"vtk_xml", [](std::string_view text) { check_any(parse_vtk_xml(source, text)); }},
   };
   return all;
 }

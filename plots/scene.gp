@@ -1,5 +1,5 @@
 # A scene as a surface with its mesh, y up, axes to one scale; once for each frame of a motion.
-# Needs: $faces (corners x,z,y of a face, closed, two blank lines after it), $pins, $stiff (the same, one blank line) where
+# Needs: $faces (corners x,z,y of a face, closed, two blank lines after it), $pins, $stiff (the same) where
 # has_pins, has_stiff; edges (whether to draw the faces' edges), x_mid, z_mid, y_mid, half (of the cube that is seen),
 # kind: page (PNG without background, for light and dark pages), white (PNG) or gif; first (1; the script sets it to 0).
 # Draws to stdout.

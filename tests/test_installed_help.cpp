@@ -43,7 +43,7 @@ std::set<std::string> options_in_help(const std::string& help) {
     const std::size_t begin = line.find_first_not_of(' ');
     if (begin == std::string::npos || begin == 0 || begin > 4 || line[begin] != '-') continue;
     const std::size_t dashes = line.find("--");
-    options.insert(line.substr(dashes, line.find_first_of(" ,=[", dashes) - dashes));
+    options.insert(line.substr(dashes, line.find_first_of(" ,=[{", dashes) - dashes));
   }
   return options;
 }
@@ -112,7 +112,7 @@ BOOST_AUTO_TEST_CASE(formatters_and_shells_take_what_was_generated) {
     const Outcome asked = shell(
         "\"$springstab\" completion fish > c.fish; HOME=$PWD fish -c 'source c.fish; complete -C "
         "\"springstab simulate "
-        "--damping \"'");
+        "--damping \"' | cut -f1");
     BOOST_TEST(words_in(asked.out) == (std::set<std::string>{"own", "designed"}));
   }
 }

@@ -45,7 +45,7 @@ OptionValue value_of(const CLI::Option& option) {
     return {ValueKind::words, names, "METHOD"};
   }
   if (type.starts_with("DIR")) return {ValueKind::folder, {}, "DIR"};
-  if (type.starts_with("F")) return {ValueKind::file, {}, "FILE"};
+  if (type.starts_with("FILE") || type.starts_with("F.")) return {ValueKind::file, {}, "FILE"};
   return {ValueKind::other, {}, label.empty() ? "value" : label};
 }
 

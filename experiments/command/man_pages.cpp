@@ -55,13 +55,21 @@ std::string entries_of(const CLI::App& app) {
   return all;
 }
 
+// A line that ends with a full stop ends a paragraph.
+std::string in_paragraphs(std::string text) {
+  for (std::size_t at = 0; (at = text.find(".\n", at)) != std::string::npos; at += 6)
+    text.replace(at, 2, ".\n.PP\n");
+  return text;
+}
+
 // Its text as paragraphs, its examples as they are.
 std::string footer_sections(const std::string& footer) {
   const std::size_t examples = footer.find("example");
   const bool has_examples = examples == 0 || (examples != std::string::npos && footer[examples - 1] == '\n');
   const std::string words = footer.substr(0, has_examples ? examples : footer.size());
   std::string all;
-  if (words.find_first_not_of(" \n") != std::string::npos) all += ".SH DESCRIPTION\n" + roff(words) + "\n";
+  if (words.find_first_not_of(" \n") != std::string::npos)
+    all += ".SH DESCRIPTION\n" + in_paragraphs(roff(words)) + "\n";
   if (has_examples) {
     std::string lines = footer.substr(footer.find(':', examples) + 1);
     for (std::size_t at = 0; (at = lines.find("\n          ", at)) != std::string::npos;)

@@ -137,7 +137,7 @@ std::string scene_picture(const std::string& plots, const Subject& subject, cons
   for (const std::vector<long>& element : stiffest) {
     for (std::size_t c = 0; c <= element.size(); ++c)
       stiff += point(at[static_cast<std::size_t>(element[c % element.size()])]);
-    stiff += "\n";
+    stiff += "\n\n";  // else gnuplot joins the lines to a net
   }
   const std::string pins = marks_of(subject, at);
   return drawn(gnuplot_data("faces", corners_of(faces, at)) + gnuplot_data("pins", pins) +

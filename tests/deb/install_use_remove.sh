@@ -25,7 +25,8 @@ done
 dpkg -i "$package" >/dev/null
 cd "$work"
 springstab=/usr/bin/springstab
-[[ $("$springstab" limits --grid 4x4 --pin corners --json) == $("$build/springstab" limits --grid 4x4 --pin corners --json) ]] ||
+question=(limits --grid 4x4 --pin corners --json)
+diff <("$springstab" "${question[@]}") <("$build/springstab" "${question[@]}") ||
   fail "installed it has another answer"
 "$springstab" doctor >/dev/null || fail "it is not sound"
 "$springstab" figures --help | tr -d '\n ' | grep -q DIR=/usr/share/springstab/plots || fail "it does not know its plots"

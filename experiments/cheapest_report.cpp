@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
+#include <ostream>
 
 #include "solvers/io/input_error.h"
 
@@ -41,7 +41,7 @@ std::string error_of(const CheapestMethod& cheapest) {
   return all;
 }
 
-void print_frames(StructureLimits& answer, std::span<const Method> methods, double rate) {
+void print_frames(std::ostream& out, StructureLimits& answer, std::span<const Method> methods, double rate) {
   std::string list;
   for (const Method& method : methods) {
     const std::optional<double> largest = answer.limits(method).recommended;
@@ -50,7 +50,7 @@ void print_frames(StructureLimits& answer, std::span<const Method> methods, doub
     list +=
         (list.empty() ? "" : ", ") + method.name() + text(" %ld of %.6g s", substeps.number, substeps.step);
   }
-  if (!list.empty()) std::cout << text("\nsubsteps of a frame at %g a second: ", rate) << list << '\n';
+  if (!list.empty()) out << text("\nsubsteps of a frame at %g a second: ", rate) << list << '\n';
 }
 
 }  // namespace
@@ -112,23 +112,23 @@ void add_steps(Json& json, const CheapestMethod& cheapest, const Method& method,
   }
 }
 
-void print_cheapest(const CheapestMethod& cheapest, StructureLimits& answer, std::span<const Method> methods,
-                    const CheapestOptions& options) {
+void print_cheapest(std::ostream& out, const CheapestMethod& cheapest, StructureLimits& answer,
+                    std::span<const Method> methods, const CheapestOptions& options) {
   const MethodCost* const best = cheapest.best();
-  if (options.frame_rate) print_frames(answer, methods, *options.frame_rate);
-  std::cout << "\ncheapest";
-  if (options.error) std::cout << text(" for an error of %g", *options.error);
+  if (options.frame_rate) print_frames(out, answer, methods, *options.frame_rate);
+  out << "\ncheapest";
+  if (options.error) out << text(" for an error of %g", *options.error);
   if (options.error && cheapest.motion())
-    std::cout << text(" over %.4g s (", cheapest.duration()) << error_of(cheapest) << ")";
-  std::cout << ": ";
+    out << text(" over %.4g s (", cheapest.duration()) << error_of(cheapest) << ")";
+  out << ": ";
   if (best) {
-    std::cout << best->method.name() << text(" at %.6g s, ", best->step);
-    if (best->error) std::cout << text("error %.3g, ", *best->error);
-    std::cout << text("%.3g CPU-seconds a second: ", *best->cost());
+    out << best->method.name() << text(" at %.6g s, ", best->step);
+    if (best->error) out << text("error %.3g, ", *best->error);
+    out << text("%.3g CPU-seconds a second: ", *best->cost());
   } else {
-    std::cout << "none, ";
+    out << "none, ";
   }
-  std::cout << reason(cheapest, options) << '\n';
+  out << reason(cheapest, options) << '\n';
 }
 
 }  // namespace springstab

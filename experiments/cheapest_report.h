@@ -27,7 +27,7 @@ void add_steps(Json& json, const CheapestMethod& cheapest, const Method& method,
                const CheapestOptions& options);
 
 /// With the substeps of a frame where a frame rate is given.
-void print_cheapest(const CheapestMethod& cheapest, StructureLimits& answer, std::span<const Method> methods,
-                    const CheapestOptions& options);
+void print_cheapest(std::ostream& out, const CheapestMethod& cheapest, StructureLimits& answer,
+                    std::span<const Method> methods, const CheapestOptions& options);
 
 }  // namespace springstab

@@ -1,8 +1,8 @@
 #include "experiments/for_step_report.h"
 
 #include <cmath>
-#include <iostream>
 #include <map>
+#include <ostream>
 
 #include "solvers/io/input_error.h"
 
@@ -114,41 +114,41 @@ void ForStepReport::add_to(Json& json) const {
   for (const auto& [method, answer] : rows_) json["for_step"][method] = answer_json(answer, *step_, numbers_);
 }
 
-void ForStepReport::print() const {
+void ForStepReport::print(std::ostream& out) const {
   if (!step_) return;
-  std::cout << text("\nat a step of %.6g s\n%-26s %-10s %12s\n", *step_, "method", "holds", "h_max/step");
+  out << text("\nat a step of %.6g s\n%-26s %-10s %12s\n", *step_, "method", "holds", "h_max/step");
   bool changes = false;
   std::map<std::string_view, std::string> unknown;
   for (const auto& [method, answer] : rows_) {
-    std::cout << text("%-26s %-10s %12s\n", method.c_str(), verdict_on(answer).c_str(),
-                      answer.margin ? text("%.6g", *answer.margin).c_str() : "-");
+    out << text("%-26s %-10s %12s\n", method.c_str(), verdict_on(answer).c_str(),
+                answer.margin ? text("%.6g", *answer.margin).c_str() : "-");
     changes = changes || answer.holds == false;
     if (answer.holds) continue;
     std::string& list = unknown[answer.unknown];
     list += (list.empty() ? "" : ", ") + method;
   }
-  for (const auto& [reason, list] : unknown) std::cout << "\nnot known, " << reason << ": " << list << '\n';
-  if (changes) print_changes();
+  for (const auto& [reason, list] : unknown) out << "\nnot known, " << reason << ": " << list << '\n';
+  if (changes) print_changes(out);
 }
 
-void ForStepReport::print_changes() const {
-  std::cout << text(
-      "\nwhat alone would make it hold; d0, alpha and dampers stay\n%-26s %12s %24s %12s %24s %9s\n",
-      "method", "stiffness x", "alpha [s]", "mass x", text("kg to %s", particles_).c_str(), "substeps");
+void ForStepReport::print_changes(std::ostream& out) const {
+  out << text("\nwhat alone would make it hold; d0, alpha and dampers stay\n%-26s %12s %24s %12s %24s %9s\n",
+              "method", "stiffness x", "alpha [s]", "mass x", text("kg to %s", particles_).c_str(),
+              "substeps");
   Reasons reasons;
   for (const auto& [method, answer] : rows_) {
     if (answer.holds != false) continue;
-    std::cout << text("%-26s %12s %24s %12s %24s %9s\n", method.c_str(),
-                      cell_of(answer.stiffness_factor).c_str(), cell_of(answer.alpha).c_str(),
-                      cell_of(answer.mass_factor).c_str(), cell_of(answer.mass_scaling).c_str(),
-                      answer.substeps.value ? text("%ld", *answer.substeps.value).c_str() : "-");
+    out << text("%-26s %12s %24s %12s %24s %9s\n", method.c_str(), cell_of(answer.stiffness_factor).c_str(),
+                cell_of(answer.alpha).c_str(), cell_of(answer.mass_factor).c_str(),
+                cell_of(answer.mass_scaling).c_str(),
+                answer.substeps.value ? text("%ld", *answer.substeps.value).c_str() : "-");
     add_reason("stiffness", answer.stiffness_factor, method, reasons);
     add_reason("alpha", answer.alpha, method, reasons);
     add_reason("mass", answer.mass_factor, method, reasons);
     add_reason("kg", answer.mass_scaling, method, reasons);
     add_reason("substeps", answer.substeps, method, reasons);
   }
-  for (const auto& [reason, list] : reasons) std::cout << '\n' << reason << ": " << list << '\n';
+  for (const auto& [reason, list] : reasons) out << '\n' << reason << ": " << list << '\n';
 }
 
 }  // namespace springstab

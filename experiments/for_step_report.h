@@ -25,14 +25,14 @@ class ForStepReport {
 
   /// `for_step`, by the method's name.
   void add_to(Json& json) const;
-  void print() const;
+  void print(std::ostream& out) const;
 
  private:
   struct Row {
     std::string method;
     StepAnswer answer;
   };
-  void print_changes() const;
+  void print_changes(std::ostream& out) const;
 
   std::optional<double> step_;  // [s]
   std::vector<Row> rows_;

@@ -89,6 +89,7 @@ Subcommand limits_command() {
                   "whether each method holds at this step, and what would make it hold")
                .shown_as("[s]"),
            Option("--explain", &o->explain, "what decides the step: where the stiffest mode's energy is"),
+           Option("--picture", &o->picture, "the scene, drawn by gnuplot").shown_as("FILE.png"),
            Option("--mode", &o->mode, "writes the stiffest mode, vertex by vertex, as CSV")
                .shown_as("FILE")}),
       .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};

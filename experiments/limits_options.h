@@ -24,6 +24,7 @@ struct LimitsOptions {
   int substeps = 0;                    // of a frame; 0: not given
   bool explain = false;                // what decides the step
   std::string mode;                    // file for the stiffest mode
+  std::string picture;                 // file for the scene: .png
 };
 
 /// Stable steps and damping of a structure; returns an ExitStatus.

@@ -1,5 +1,7 @@
 #include "experiments/limits_words.h"
 
+#include <cmath>
+
 #include "experiments/command/enum_name.h"
 
 namespace springstab {
@@ -40,5 +42,13 @@ const char* name(Proof proof) {
 }
 
 const char* value_kind(const StiffestMode& k0) { return k0.smallest ? "eigenvalue" : "Ritz value"; }
+
+std::optional<double> factorized_bound(const StiffestMode& k0, BoundKind kind) {
+  return k0.bound_kind == kind ? std::optional(k0.upper_bound) : std::nullopt;
+}
+
+std::optional<double> gershgorin_bound(const StiffestMode& k0) {
+  return std::isfinite(k0.gershgorin) ? std::optional(k0.gershgorin) : std::nullopt;
+}
 
 }  // namespace springstab

@@ -10,6 +10,7 @@
 #include "experiments/explain.h"
 #include "experiments/inputs/mesh_report.h"
 #include "experiments/inputs/size_report.h"
+#include "experiments/report/pictures.h"
 #include "experiments/runs/checkpoint.h"
 #include "experiments/runs/identity.h"
 #include "experiments/runs/measured_run.h"
@@ -124,7 +125,7 @@ int say_no_plan(const std::string& method, const std::string& why, bool json) {
 // Runs from the start or from where a run was left.
 Course run(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
            StepChooser& chooser, const StepPlan& plan, const State<Vector>& start, CheckpointFile& checkpoint,
-           const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder, ErrorRun* error) {
+           const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder, Film& film, ErrorRun* error) {
   Course course{
       .result = {}, .start = start, .end = {}, .watch = chooser.watch(start), .counts = {}, .step = plan.h};
   KeptRun begin = checkpoint.read().value_or(KeptRun{start_of(plan), start, {}});
@@ -149,6 +150,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
       counted, *stepper, std::move(begin.run), course.watch, course.end,
       [&](const RunSoFar& so_far, const State<Vector>& s) {
         recorder->record(so_far.time, s);
+        film.see(so_far.time, s.x);
         if (error) error->see(so_far.time, s);
         if (so_far.at_checkpoint && (checkpoint.is_due() || interrupt.requested()))
           checkpoint.save([&]() -> KeptRun {
@@ -190,9 +192,10 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   if (!options.output.empty()) make_folder(options.output);
   CheckpointFile checkpoint(options.output, identity(common, options), options.earlier, common.quiet);
   std::optional<Recorder> recorder;
+  Film film(options.picture, subject, options.duration);
   const StopOnInterrupt interrupt;
   Course course =
-      run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder, error);
+      run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder, film, error);
   if (error && course.result.status == StepStatus::done && !course.stopped) {
     if (error->is_to_repeat(start, chooser.decisions().h, interrupt)) {
       checkpoint.finish();
@@ -204,7 +207,10 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
     checkpoint.finish();  // frames get other numbers: nothing can go on from it
     recorder->record_last();
   }
-  if (!course.stopped) recorder->flush();  // a full disk shows before the report
+  if (!course.stopped) {  // a full disk shows before the report
+    recorder->flush();
+    film.write(course.end.x);
+  }
 
   if (common.json) {
     Json report = json_of(course, options, subject, chooser, recorder->written());
@@ -249,6 +255,7 @@ int run_simulate(const CommonOptions& common, const SimulateOptions& options) {
   print_mesh_notes(subject);
   print_size_warning(subject);
   if (options.error) expect_no_contact(subject, "--error");
+  if (!options.picture.empty()) expect_drawable(options.picture, subject, true);
   prepare(subject, options);
   return naming_duration([&] {
     return options.error ? run_to_error(common, options, subject)

@@ -86,6 +86,9 @@ Subcommand simulate_command() {
                .one_of({"gltf", "obj", "ply", "pvd", "vtk"})
                .with_default(),
            Option("--frames", &o->frames, "number of frames after the first, evenly spaced").with_default(),
+           Option("--picture", &o->picture,
+                  "a quick look by gnuplot: the end of the run (FILE.png) or its motion (FILE.gif)")
+               .shown_as("FILE"),
            Option("--solver", &o->solver,
                   "of implicit methods' linear systems: cg (conjugate gradients) or direct (sparse Cholesky)")
                .one_of({"cg", "direct"})

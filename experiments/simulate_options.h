@@ -29,6 +29,7 @@ struct SimulateOptions {
   int newton = 1;       // steps of Newton's method within an implicit step
   bool direct = false;  // a factorization instead of conjugate gradients
   bool keep_diverged = false;
+  std::string picture;  // file for a quick look: .png or .gif
   EarlierRun earlier;
 };
 

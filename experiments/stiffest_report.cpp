@@ -1,7 +1,7 @@
 #include "experiments/stiffest_report.h"
 
 #include <cmath>
-#include <iostream>
+#include <ostream>
 
 #include "analysis/constants.h"
 #include "solvers/io/input_error.h"
@@ -62,13 +62,13 @@ void StiffestReport::add_to(Json& json) const {
                           {"element", bound_json(motion_->element, k0_)}};
 }
 
-void StiffestReport::print() const {
+void StiffestReport::print(std::ostream& out) const {
   if (!explain_) return;
   if (!motion_) {
-    std::cout << '\n' << no_motion << '\n';
+    out << '\n' << no_motion << '\n';
     return;
   }
-  std::cout << text(
+  out << text(
       "\nthe stiffest mode, k0 = %.6g 1/s²: most of its energy is in\n%-10s %10s %9s %16s %12s   %s\n", k0_,
       "", "number", "share", "stiffness [N/m]", "mass [kg]", "between");
   for (const Carrier& each : motion_->carriers) {
@@ -76,16 +76,16 @@ void StiffestReport::print() const {
     const bool unknown = each.kind == "unknown";
     const std::vector<long> numbers = numbers_of(each);
     for (const long v : numbers) vertices += (vertices.empty() ? "" : " ") + std::to_string(v);
-    std::cout << text("%-10s %10ld %8.3f%% %16.6g %12.4g   %s\n", std::string(each.kind).c_str(),
-                      unknown ? numbers.front() : each.index, 100 * each.share, each.stiffness, each.mass,
-                      unknown ? "" : vertices.c_str());
+    out << text("%-10s %10ld %8.3f%% %16.6g %12.4g   %s\n", std::string(each.kind).c_str(),
+                unknown ? numbers.front() : each.index, 100 * each.share, each.stiffness, each.mass,
+                unknown ? "" : vertices.c_str());
   }
   const auto bound = [&](const char* what, const std::optional<double>& value) {
     if (value)
-      std::cout << text("k0 is at most %.6g 1/s² by %s, which leaves %.3g %% of the step unused\n", *value,
-                        what, 100 * unused_part(*value, k0_));
+      out << text("k0 is at most %.6g 1/s² by %s, which leaves %.3g %% of the step unused\n", *value, what,
+                  100 * unused_part(*value, k0_));
   };
-  std::cout << '\n';
+  out << '\n';
   bound("the stiffest node", motion_->nodal);
   bound("the stiffest element", motion_->element);
 }

@@ -19,7 +19,7 @@ class StiffestReport {
                  const Subject& subject, const State<Vector>& start);
 
   void add_to(Json& json) const;
-  void print() const;
+  void print(std::ostream& out) const;
 
  private:
   void write_mode(const std::string& path, const Subject& subject, const State<Vector>& start) const;

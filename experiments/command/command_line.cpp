@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "analysis/method.h"
+#include "experiments/command/app_pages.h"
 #include "experiments/command/interrupt.h"
 #include "experiments/command/optional_parts.h"
 #include "experiments/command/subcommand_list.h"
@@ -20,9 +21,10 @@ namespace springstab {
 namespace {
 
 std::vector<Subcommand> all_subcommands() {
-  return {methods_command(),    region_command(),         limits_command(),     simulate_command(),
-          complexity_command(), work_precision_command(), divergence_command(), stress_command(),
-          figures_command(),    probe_command(),          diagnose_command()};
+  return {methods_command(),  region_command(),     limits_command(),         report_command(),
+          simulate_command(), complexity_command(), work_precision_command(), divergence_command(),
+          stress_command(),   figures_command(),    probe_command(),          diagnose_command(),
+          doctor_command()};
 }
 
 CLI::Option* add_target(CLI::App& app, const Option& option, bool* flag) {
@@ -112,6 +114,15 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
       "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
 }
 
+// As a shell reads it: in quotes where it has to be.
+std::string shell_word(const std::string& word) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,./:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
 // What bad input gets: one line.
 int refuse(const char* reason) {
   std::cerr << "springstab: " << reason << '\n';
@@ -125,7 +136,8 @@ int run_command(int argc, const char* const* argv) {
   const Subcommand* chosen = nullptr;
   CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
   add_common_options(app, common);
-  const std::vector<Subcommand> all = all_subcommands();
+  std::vector<Subcommand> all = all_subcommands();
+  for (const auto& more : {completion_command(app), man_command(app)}) all.push_back(more);
   for (const Subcommand& subcommand : all) {
     CLI::App* added = app.add_subcommand(subcommand.name, subcommand.title);
     for (const Option& option : subcommand.options) add(*added, option);
@@ -137,6 +149,7 @@ int run_command(int argc, const char* const* argv) {
     });
   }
 
+  for (int i = 0; i < argc; ++i) common.command_line += (i > 0 ? " " : "") + shell_word(argv[i]);
   exit_on_interrupt("nothing was saved");
   try {
     app.parse(argc, argv);

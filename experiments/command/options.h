@@ -15,6 +15,7 @@ struct CommonOptions {
   bool quiet = false;
   std::uint64_t seed = 1;
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::string command_line{};     // as it was typed, for a shell
   std::string method_file{};      // its method is known by then
   std::set<std::string> given{};  // names of the subcommand's options that were typed, as "--nx"
 };

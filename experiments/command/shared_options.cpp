@@ -71,6 +71,12 @@ bool amplifies_without_need(const Method& method) {
   return method.info().implicit && stability_region(method).amplifies();
 }
 
+std::string title_of(const InputOptions& input) {
+  return !input.file.empty()   ? std::filesystem::path(input.file).stem().string()
+         : !input.grid.empty() ? input.grid
+                               : std::filesystem::path(input.stiffness).stem().string();
+}
+
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more) {
   std::vector<Option> all{
       Option(

@@ -33,6 +33,9 @@ Json method_settings(const CommonOptions& common, const std::string& names = "")
 /// explicit methods it is expected.
 bool amplifies_without_need(const Method& method);
 
+/// What an input is called in figures: its file's name without suffix, or the grid.
+std::string title_of(const InputOptions& input);
+
 /// INPUT and what belongs to it, then `more`.
 std::vector<Option> with_input(InputOptions& input, std::vector<Option> more);
 

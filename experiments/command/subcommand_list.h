@@ -1,5 +1,5 @@
 // The subcommands of `springstab`: each says what it is called, which options it takes and how it is run, as
-// data, so that the parser of command lines is known to command_line.cpp alone.
+// data, so that the parser of command lines is known to this folder alone.
 #pragma once
 
 #include <functional>
@@ -54,6 +54,7 @@ struct Subcommand {
 Subcommand methods_command();         // the methods with their constants
 Subcommand region_command();          // stable region of one method in the X-Y plane
 Subcommand limits_command();          // stable steps and damping of a structure
+Subcommand report_command();          // the answer as a page
 Subcommand simulate_command();        // runs a scene or a system of matrices
 Subcommand complexity_command();      // what the methods cost (paper §5)
 Subcommand work_precision_command();  // error against run time on a scene or a system of matrices
@@ -61,6 +62,7 @@ Subcommand divergence_command();      // theory against simulation
 Subcommand probe_command();           // another program's integrator
 Subcommand diagnose_command();        // a run that blew up, from its frames
 Subcommand stress_command();          // stiff, extreme and hostile cases by every method
+Subcommand doctor_command();          // what is built in, and a self-check
 Subcommand figures_command();         // computes and plots
 
 }  // namespace springstab

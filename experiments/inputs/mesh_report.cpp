@@ -20,27 +20,34 @@ class Counted {
   std::string list_;
 };
 
-void say(const std::string& kind, const std::string& source, const std::string& what, long line = 0) {
-  std::cerr << "springstab: " << kind << ": " << place_of(source, line) << what << '\n';
-}
+class Notes {
+ public:
+  void say(const std::string& kind, const std::string& source, const std::string& what, long line = 0) {
+    all_.push_back(kind + ": " + place_of(source, line) + what);
+  }
+  void note(const MeshFile& file, const std::string& what, long line = 0) {
+    say("note", file.path, what, line);
+  }
+  const std::vector<std::string>& all() const { return all_; }
 
-void note(const MeshFile& file, const std::string& what, long line = 0) {
-  say("note", file.path, what, line);
-}
+ private:
+  std::vector<std::string> all_;
+};
 
-void print_texture_notes(const MeshFile& file) {
+void add_texture_notes(const MeshFile& file, Notes& notes) {
   if (!file.texture_map) return;
   const TextureMap& map = *file.texture_map;
   if (file.rest_shape != RestShape::texture)
-    return note(file,
-                "this face has no area in the texture map, which is not used: all faces rest as they lie",
-                map.line);
+    return notes.note(
+        file, "this face has no area in the texture map, which is not used: all faces rest as they lie",
+        map.line);
   if (map.strained == 0) return;
   const std::string scale =
       map.unit == map.area_unit
           ? text("though the map has the mesh's area (texture_unit %.4g m)", map.unit)
           : text("at a texture_unit of %.4g m; the mesh's area asks for %.4g m", map.unit, map.area_unit);
-  say("warning", file.path,
+  notes.say(
+      "warning", file.path,
       text("the cloth starts strained: %d of %d triangles differ from the texture map by more than a factor "
            "of %g in length, this face by %.4g, ",
            map.strained, map.triangles, straining_factor, map.largest_factor) +
@@ -48,12 +55,12 @@ void print_texture_notes(const MeshFile& file) {
       map.line);
 }
 
-void print_unused_texture_unit(const Subject& subject) {
+void add_unused_texture_unit(const Subject& subject, Notes& notes) {
   if (!subject.material()) return;
   const auto* cloth = std::get_if<ClothMaterial>(&*subject.material());
   const std::optional<MeshFile>& file = subject.mesh_file();
   if (cloth && cloth->texture_unit && !(file && file->rest_shape == RestShape::texture))
-    say("note", "texture_unit", "is not used: the cloth rests as it lies, not by a texture map");
+    notes.say("note", "texture_unit", "is not used: the cloth rests as it lies, not by a texture map");
 }
 
 // Null where there is none, in a plane, and for springs; of one that is not used the line alone.
@@ -73,14 +80,15 @@ Json texture_json(const MeshFile& file) {
 
 }  // namespace
 
-void print_mesh_notes(const Subject& subject) {
-  print_unused_texture_unit(subject);
+std::vector<std::string> mesh_notes(const Subject& subject) {
+  Notes notes;
+  add_unused_texture_unit(subject, notes);
   if (subject.has_unused_diagonals())
-    say("note", "diagonals", "have no use here: springs lie on both diagonals of a cell");
-  if (!subject.mesh_file()) return;
+    notes.say("note", "diagonals", "have no use here: springs lie on both diagonals of a cell");
+  if (!subject.mesh_file()) return notes.all();
   const MeshFile& file = *subject.mesh_file();
   const MeshRepair& r = file.repair;
-  for (const FileNote& n : file.notes) note(file, n.text, n.line);
+  for (const FileNote& n : file.notes) notes.note(file, n.text, n.line);
   const std::string one = file.solid ? "tetrahedron" : "face", many = file.solid ? "tetrahedra" : "faces";
   Counted mended;
   mended.add(r.merged_vertices, "merged ", "duplicate vertex", "duplicate vertices");
@@ -90,14 +98,19 @@ void print_mesh_notes(const Subject& subject) {
   mended.add(r.duplicate_elements, "dropped ", "duplicate " + one, "duplicate " + many);
   mended.add(r.unreferenced_vertices, "dropped ", "unreferenced vertex", "unreferenced vertices");
   mended.add(r.turned_elements, "turned ", "left-handed tetrahedron", "left-handed tetrahedra");
-  if (r.changed()) note(file, mended.list() + "; pins and frames keep the numbers of the file");
+  if (r.changed()) notes.note(file, mended.list() + "; pins and frames keep the numbers of the file");
   if (r.crowded > 0 && file.solid)
-    note(file, text("%d %s tetrahedra that overlap: more than two, or two on one side", r.crowded,
-                    r.crowded == 1 ? "face has" : "faces have"));
+    notes.note(file, text("%d %s tetrahedra that overlap: more than two, or two on one side", r.crowded,
+                          r.crowded == 1 ? "face has" : "faces have"));
   if (r.crowded > 0 && !file.solid)
-    note(file, text("%d %s more than two faces: every two of them resist bending there", r.crowded,
-                    r.crowded == 1 ? "edge has" : "edges have"));
-  print_texture_notes(file);
+    notes.note(file, text("%d %s more than two faces: every two of them resist bending there", r.crowded,
+                          r.crowded == 1 ? "edge has" : "edges have"));
+  add_texture_notes(file, notes);
+  return notes.all();
+}
+
+void print_mesh_notes(const Subject& subject) {
+  for (const std::string& note : mesh_notes(subject)) std::cerr << "springstab: " << note << '\n';
 }
 
 Json mesh_json(const Subject& subject) {

@@ -36,19 +36,26 @@ void add_size(Json& report, const Subject& subject) {
   report["springs"] = size ? Json(size->springs) : Json();
 }
 
-void print_size_warning(const Subject& subject) {
-  if (!subject.scene_size()) return;
+std::string size_warning(const Subject& subject) {
+  if (!subject.scene_size()) return {};
   const double across = subject.scene_size()->extent.maxCoeff();
   const std::string place = subject.mesh_file() ? subject.mesh_file()->path : "grid";
-  const std::string is = text("springstab: warning: %s: is %.4g m across, ", place.c_str(), across);
+  const std::string is = text("warning: %s: is %.4g m across, ", place.c_str(), across);
   if (across > largest)
-    std::cerr << is
-              << "more than 20 m: are its lengths metres? --scale 0.001 (in a scene \"scale\": 0.001) takes "
-                 "them as millimetres\n";
+    return is +
+           "more than 20 m: are its lengths metres? --scale 0.001 (in a scene \"scale\": 0.001) takes them "
+           "as "
+           "millimetres";
   if (across < smallest && across > 0)
-    std::cerr << is
-              << "less than 1 mm: are its lengths metres? --scale 1000 (in a scene \"scale\": 1000) takes "
-                 "them as kilometres, --scale 0.001 is for millimetres\n";
+    return is +
+           "less than 1 mm: are its lengths metres? --scale 1000 (in a scene \"scale\": 1000) takes them as "
+           "kilometres, --scale 0.001 is for millimetres";
+  return {};
+}
+
+void print_size_warning(const Subject& subject) {
+  if (const std::string warning = size_warning(subject); !warning.empty())
+    std::cerr << "springstab: " << warning << '\n';
 }
 
 std::optional<double> slowest_period(const StiffestMode& k0) {

@@ -18,7 +18,9 @@ std::string size_text(const Subject& subject);
 /// Adds `extent` [m], `total_mass` [kg] and `springs` to a report; null for matrices.
 void add_size(Json& report, const Subject& subject);
 
-/// A line on stderr where a scene is so large or so small that its lengths are probably no metres.
+/// A line where a scene is so large or so small that its lengths are probably no metres; else empty.
+std::string size_warning(const Subject& subject);
+/// On stderr.
 void print_size_warning(const Subject& subject);
 
 /// A time that steps have to resolve.

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -15,12 +16,13 @@
 namespace springstab {
 namespace {
 
-void run_gnuplot(const std::string& settings, const std::string& script) {
+// `start` is called in the child, and is to end in gnuplot.
+template <class Start>
+void run_gnuplot(const std::string& script, const Start& start) {
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error(std::string("cannot start gnuplot: ") + std::strerror(errno));
   if (child == 0) {
-    dup2(STDERR_FILENO, STDOUT_FILENO);  // stdout belongs to the report
-    execlp("gnuplot", "gnuplot", "-e", settings.c_str(), script.c_str(), static_cast<char*>(nullptr));
+    start();
     _exit(127);
   }
   int status = 0;
@@ -48,6 +50,24 @@ struct Removed {
   }
 };
 
+/// A file without a name, which is gone with this process.
+struct Nameless {
+  std::FILE* file = std::tmpfile();
+  Nameless() {
+    if (!file) throw InputError("gnuplot", 0, std::string("no temporary file: ") + std::strerror(errno));
+  }
+  ~Nameless() { std::fclose(file); }
+  Nameless(const Nameless&) = delete;
+
+  std::string content() const {
+    std::rewind(file);
+    std::string all;
+    char buffer[65536];
+    while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, file)) all.append(buffer, n);
+    return all;
+  }
+};
+
 }  // namespace
 
 std::string gnuplot_literal(const std::string& s) {
@@ -62,14 +82,42 @@ std::vector<std::string> draw(const std::string& script, const std::string& sett
   for (const auto& [type, ending] : {std::pair{"svg", "</svg>\n\n"}, {"png", "IEND\xAE\x42\x60\x82"}}) {
     const std::string aside = base + ".part." + type, target = base + "." + type;
     const Removed at_the_end{aside};
-    run_gnuplot(settings + "type=" + gnuplot_literal(type) + "; output_file=" + gnuplot_literal(aside),
-                script);
+    const std::string all =
+        settings + "type=" + gnuplot_literal(type) + "; output_file=" + gnuplot_literal(aside);
+    run_gnuplot(script, [&] {
+      dup2(STDERR_FILENO, STDOUT_FILENO);  // stdout belongs to the report
+      execlp("gnuplot", "gnuplot", "-e", all.c_str(), script.c_str(), static_cast<char*>(nullptr));
+    });
     if (!file_ends_with(aside, ending))
       throw InputError(target, 0, "cannot be written whole (is the disk full?)");
     std::filesystem::rename(aside, target);
     files.push_back(target);
   }
   return files;
+}
+
+std::string drawn(const std::string& lines) {
+  const Nameless in, out, said;
+  if (std::fwrite(lines.data(), 1, lines.size(), in.file) != lines.size() || std::fflush(in.file) != 0)
+    throw InputError("gnuplot", 0, std::string("cannot be told what to draw: ") + std::strerror(errno));
+  std::rewind(in.file);
+  try {
+    run_gnuplot("these lines", [&] {
+      dup2(fileno(in.file), STDIN_FILENO);
+      dup2(fileno(out.file), STDOUT_FILENO);
+      dup2(fileno(said.file), STDERR_FILENO);
+      execlp("gnuplot", "gnuplot", static_cast<char*>(nullptr));
+    });
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(error.what() + (": " + said.content()));
+  }
+  return out.content();
+}
+
+std::string gnuplot_data(const std::string& name, const std::string& rows) {
+  return "$" + name + " << EOD\n" + rows + (rows.ends_with('\n') ? "" : "\n") + "EOD\n";
 }
 
 }  // namespace springstab

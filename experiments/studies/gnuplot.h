@@ -20,4 +20,10 @@ std::string gnuplot_literal(const std::string& s);
 std::vector<std::string> draw(const std::string& script, const std::string& settings,
                               const std::string& base);
 
+/// What gnuplot draws to its stdout when it is given these lines. No file is written. Throws as draw() does.
+std::string drawn(const std::string& lines);
+
+/// Data of a drawing, as the lines that define it: "$name << EOD".
+std::string gnuplot_data(const std::string& name, const std::string& rows);
+
 }  // namespace springstab

@@ -6,8 +6,8 @@
 #include "analysis/spectra/power_iteration.h"
 #include "analysis/spectra/spectrum.h"
 #include "experiments/command/output.h"
-#include "experiments/runs/measured_run.h"
 #include "experiments/runs/step_run.h"
+#include "solvers/cpu_time.h"
 
 namespace springstab {
 namespace {
@@ -52,22 +52,9 @@ std::vector<Moment> moments_of(const Drape& drape, const std::string& method, do
   StepChooser chooser(subject, step_options(common, options));
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) throw std::runtime_error("a drape cannot start: " + reason_text(chooser));
-  const State<Vector> start = subject.initial_state(common.seed);
-  std::vector<Moment> moments;
-  const auto due = [&] { return duration * static_cast<double>(moments.size()) / count * (1 - 1e-9); };
-  Progress progress("draping", common.quiet);
-  const MeasuredRun run = measured_run(
-      subject.system(), method, *plan, chooser.watch(start), start,
-      [&](const SimulationResult& so_far, const State<Vector>& state) {
-        while (!moments.empty() && so_far.time < moments.back().time) moments.pop_back();  // undone
-        if (so_far.time >= due()) moments.push_back({so_far.time, state});
-        progress.update(so_far.time / duration);
-        return true;
-      },
-      chooser.policy());
-  if (run.result.status != StepStatus::done || moments.size() != static_cast<std::size_t>(count) + 1)
-    throw std::runtime_error(text("a drape by %s ended at %g s", method.c_str(), run.result.time));
-  return moments;
+  MomentsOfRun run = moments_of(subject, chooser, *plan, duration, count, common);
+  if (!run.done) throw std::runtime_error(text("a drape by %s ended at %g s", method.c_str(), run.time));
+  return std::move(run.moments);
 }
 
 std::vector<K0Sample> watch_k0(const Drape& drape, const std::vector<Moment>& moments, double tolerance,

@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "experiments/command/options.h"
+#include "experiments/runs/moments.h"
 #include "experiments/studies/complexity/drape.h"
 #include "solvers/state.h"
 #include "solvers/system.h"
 
 namespace springstab {
-
-/// A state of a run.
-struct Moment {
-  double time;  // [s]
-  State<Vector> state;
-};
 
 /// count + 1 moments, evenly spaced from the start to the end, of a drape run by a method with the step that
 /// its rule gives it; linearizations are projected. Throws std::runtime_error if the run does not get there.

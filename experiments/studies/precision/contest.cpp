@@ -207,7 +207,7 @@ ContestResult run_contest(Problem& problem, const std::string& cache, const Cont
                        .k0 = problem.k0(),
                        .set_up_seconds = problem.set_up_seconds(),
                        .designed = problem.is_designed(),
-                       .reference = reference_motion(problem, cache),
+                       .reference = reference_motion(problem, cache, options.reference),
                        .options = options,
                        .series = {}};
   std::vector<Contestant> contestants = method_contestants(problem, options.methods);

@@ -47,6 +47,7 @@ struct ContestOptions {
   int repetitions = 5;      // that are timed, after one that is not
   bool libraries = true;    // but not where the damping is fitted to a step
   std::vector<Method> methods = all_methods();
+  ReferenceOptions reference{};
 };
 
 struct ContestRun {

@@ -15,6 +15,7 @@
 #include "experiments/runs/fnv1a.h"
 #include "experiments/studies/precision/peers.h"
 #include "experiments/studies/precision/scales.h"
+#include "solvers/cpu_time.h"
 #include "solvers/io/input_error.h"
 
 namespace springstab {
@@ -37,11 +38,14 @@ Trajectory by_modes(const Problem& problem, std::uint64_t seed) {
   return trajectory;
 }
 
-Trajectory integrated(Problem& problem, double tolerance) {
+Trajectory integrated(Problem& problem, double tolerance, double seconds) {
+  const double before = cpu_seconds();
   const Scales scales = scales_of(problem);
-  AdaptiveResult result = integrate_adaptively(
-      problem.system(), problem.start(), sample_times(problem),
-      {.tolerance = tolerance, .place_scale = scales.place, .velocity_scale = scales.velocity});
+  AdaptiveResult result = integrate_adaptively(problem.system(), problem.start(), sample_times(problem),
+                                               {.tolerance = tolerance,
+                                                .place_scale = scales.place,
+                                                .velocity_scale = scales.velocity,
+                                                .give_up = [&] { return cpu_seconds() - before > seconds; }});
   if (!result.finished)
     throw InputError(
         "--duration", 0,
@@ -68,13 +72,13 @@ std::optional<Errors> check(Problem& problem, const Trajectory& reference) {
   return std::nullopt;
 }
 
-Reference compute(Problem& problem) {
+Reference compute(Problem& problem, const ReferenceOptions& options) {
   const bool modes = has_modes(problem);
   Reference reference;
   reference.method = modes ? "closed form, mode by mode" : "GSL rk8pd, tolerances 1e-10 and 1e-12";
-  reference.trajectory = modes ? by_modes(problem, 0) : integrated(problem, tight);
+  reference.trajectory = modes ? by_modes(problem, 0) : integrated(problem, tight, options.seconds);
   expect_motion(problem, reference.trajectory);
-  const Trajectory other = modes ? by_modes(problem, 1) : integrated(problem, loose);
+  const Trajectory other = modes ? by_modes(problem, 1) : integrated(problem, loose, options.seconds);
   reference.error = errors_of(problem.system(), other, reference.trajectory);
   // No phase √k0 t is known better than to its rounding, even if both computations round alike.
   const double rounding = std::numeric_limits<double>::epsilon() *
@@ -82,7 +86,7 @@ Reference compute(Problem& problem) {
   for (double* e : {&reference.error.position, &reference.error.velocity, &reference.error.trajectory,
                     &reference.error.energy})
     *e = std::max(*e, rounding);
-  reference.check = check(problem, reference.trajectory);
+  if (options.checked) reference.check = check(problem, reference.trajectory);
   return reference;
 }
 
@@ -190,16 +194,16 @@ std::string fingerprint(Problem& problem) {
   return hash.hex();
 }
 
-Reference reference_motion(Problem& problem, const std::string& cache) {
+Reference reference_motion(Problem& problem, const std::string& cache, const ReferenceOptions& options) {
   problem.set_own_damping();
-  if (cache.empty()) return compute(problem);
+  if (cache.empty()) return compute(problem, options);
   make_folder(cache);
   const std::string path = cache + "/" + fingerprint(problem);
   Reference reference;
   reference.method =
       has_modes(problem) ? "closed form, mode by mode" : "GSL rk8pd, tolerances 1e-10 and 1e-12";
   if (read(path, problem.system().size(), reference)) return reference;
-  reference = compute(problem);
+  reference = compute(problem, options);
   write(path, reference);
   return reference;
 }

@@ -1,6 +1,7 @@
 // The motion that errors are measured against, and how far off it may be itself.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,11 @@ struct Reference {
   std::optional<Errors> check;  // how far a third, unrelated integrator is away; nothing if it did not finish
 };
 
+struct ReferenceOptions {
+  bool checked = true;                                       // by the third integrator
+  double seconds = std::numeric_limits<double>::infinity();  // CPU, of an integration
+};
+
 inline constexpr char reference_check[] = "Bulirsch-Stoer, tolerance 1e-13";
 
 /// Linear systems with Rayleigh damping or none, of up to 2000 unknowns, move as their modes do, and the
@@ -43,7 +49,7 @@ inline constexpr char reference_check[] = "Bulirsch-Stoer, tolerance 1e-13";
 /// CPU-minutes. Kept in the folder `cache` (empty: nowhere) under the problem's fingerprint. With the
 /// problem's own damping, designed or not. Throws InputError where the integration does not finish or
 /// nothing moves.
-Reference reference_motion(Problem& problem, const std::string& cache);
+Reference reference_motion(Problem& problem, const std::string& cache, const ReferenceOptions& options = {});
 
 /// A hash of what the problem does: its start, duration, masses, energies and accelerations there and at
 /// states near it. Whatever changes the motion changes it.

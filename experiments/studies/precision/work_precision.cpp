@@ -44,12 +44,6 @@ void check(const WorkPrecisionOptions& options) {
                      "has no work_precision.gp, expected the folder of the gnuplot scripts (--plots)");
 }
 
-std::string title_of(const InputOptions& input) {
-  return !input.file.empty()   ? std::filesystem::path(input.file).stem().string()
-         : !input.grid.empty() ? input.grid
-                               : std::filesystem::path(input.stiffness).stem().string();
-}
-
 Json json_of(const ContestRun& run, bool library) {
   Json seconds = Json::array();
   for (double s : run.seconds) seconds.push_back(number(s));
@@ -122,7 +116,7 @@ int run_work_precision(const CommonOptions& common, const WorkPrecisionOptions& 
     std::cerr << "springstab: left out, for they were not found when this was built: " << missing << '\n';
   const ContestResult result =
       run_contest(problem, options.output.empty() ? "" : options.output + "/references",
-                  {options.time_limit, options.repetitions, options.libraries, methods}, common, journal);
+                  {options.time_limit, options.repetitions, options.libraries, methods, {}}, common, journal);
   Json files = Json::array();
   if (!options.output.empty()) {
     const std::string base = options.output + "/work_precision";

@@ -7,7 +7,9 @@
 
 namespace springstab {
 
-Subcommand limits_command() {
+Subcommand limits_command() { return limits_command(run_limits); }
+
+Subcommand limits_command(std::function<int(const CommonOptions&, const LimitsOptions&)> run) {
   const auto o = std::make_shared<LimitsOptions>();
   return {
       .name = "limits",
@@ -91,7 +93,7 @@ Subcommand limits_command() {
            Option("--explain", &o->explain, "what decides the step: where the stiffest mode's energy is"),
            Option("--mode", &o->mode, "writes the stiffest mode, vertex by vertex, as CSV")
                .shown_as("FILE")}),
-      .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};
+      .run = [o, run](const CommonOptions& common) { return run(common, *o); }};
 }
 
 }  // namespace springstab

@@ -1,10 +1,12 @@
 // What `springstab limits` is asked.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "experiments/command/options.h"
+#include "experiments/command/subcommand_list.h"
 #include "experiments/inputs/subject.h"
 
 namespace springstab {
@@ -25,6 +27,12 @@ struct LimitsOptions {
   bool explain = false;                // what decides the step
   std::string mode;                    // file for the stiffest mode
 };
+
+/// The subcommand, run by whoever answers.
+Subcommand limits_command(std::function<int(const CommonOptions&, const LimitsOptions&)> run);
+
+/// Throws InputError for numbers that are out of range and options that exclude each other.
+void check(const CommonOptions& common, const LimitsOptions& options);
 
 /// Stable steps and damping of a structure; returns an ExitStatus.
 int run_limits(const CommonOptions& common, const LimitsOptions& options);

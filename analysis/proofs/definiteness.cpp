@@ -13,11 +13,6 @@ namespace {
 
 Eigen::VectorXd row_sums(const SparseMatrix& a) { return a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()); }
 
-constexpr int particles_a_piece = 20'000;
-
-// The loss measured on nets is 0.15 / layers² to 0.4 / layers², the more where stiffnesses vary tenfold.
-int layers_for(double loss) { return std::clamp(static_cast<int>(std::ceil(std::sqrt(0.23 / loss))), 2, 64); }
-
 // A, plus 1e-9 of its diagonal and 1e-13 of its largest entry.
 SparseMatrix lifted(SparseMatrix a) {
   const double largest = a.coeffs().abs().maxCoeff();
@@ -38,6 +33,13 @@ DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, double loss) :
   damping_size_ = s.has_damping() ? row_sums(damping_) : Eigen::VectorXd::Zero(s.size());
 }
 
+DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
+                                     std::function<bool(bool)> all_of)
+    : DefinitenessProof(s) {
+  pieces_ = std::move(own);
+  all_of_ = std::move(all_of);
+}
+
 // c M - a D - b K, with an entry for each of theirs.
 SparseMatrix DefinitenessProof::sum(double c, double a, double b) const {
   SparseMatrix matrix = c * mass_ - b * stiffness_;
@@ -48,8 +50,9 @@ SparseMatrix DefinitenessProof::sum(double c, double a, double b) const {
 // What is too large to be factorized at once.
 bool DefinitenessProof::in_pieces([[maybe_unused]] const SparseMatrix& matrix) {
 #ifdef SPRINGSTAB_CHOLMOD
-  if (!pieces_) pieces_ = std::make_shared<const Pieces>(matrix, particles_a_piece, layers_for(loss_));
-  return pieces_->prove(matrix);
+  if (!pieces_)
+    pieces_ = std::make_shared<const Pieces>(matrix, Pieces::usual_particles, Pieces::layers_for(loss_));
+  return all_of(pieces_->prove(matrix));
 #else
   return false;
 #endif
@@ -71,13 +74,13 @@ bool DefinitenessProof::holds(double c, double a, double b) {
       8 * unit_roundoff *
       (std::abs(c) * mass_size_ + std::abs(a) * damping_size_ + std::abs(b) * stiffness_size_);
   const Eigen::VectorXd diagonal = matrix.diagonal();
-  if (!forming_error.allFinite() || !(diagonal.minCoeff() > 0)) return false;
+  if (!all_of(forming_error.allFinite() && diagonal.minCoeff() > 0)) return false;
 
   // Gershgorin: 2 a_ii exceeds the row's absolute sum, whose own rounding is below n unit roundoffs of it.
   const double summing_error = 2 * unit_roundoff * static_cast<double>(matrix.rows());
-  if ((2 * diagonal - row_sums(matrix) - 2 * forming_error - summing_error * diagonal).minCoeff() > 0)
+  if (all_of((2 * diagonal - row_sums(matrix) - 2 * forming_error - summing_error * diagonal).minCoeff() > 0))
     return true;
-  if (!cholesky_.analyze(matrix)) {
+  if (all_of_ || !cholesky_.analyze(matrix)) {
     matrix.diagonal() -= forming_error;
     return in_pieces(matrix);
   }

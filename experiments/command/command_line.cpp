@@ -112,20 +112,24 @@ void add_common_options(CLI::App& app, CommonOptions& common) {
       "3 there is no answer, 4 the simulation diverged, 130 interrupted.");
 }
 
-// What bad input gets: one line.
-int refuse(const char* reason) {
-  std::cerr << "springstab: " << reason << '\n';
-  return bad_input;
+// What was thrown as one line of the program's; the exit status.
+int refuse(const std::string& program, const std::string& reason, int status = bad_input) {
+  std::cerr << program << ": " << reason << '\n';
+  return status;
 }
 
 }  // namespace
 
 int run_command(int argc, const char* const* argv) {
+  return run_command("springstab", all_subcommands(), argc, argv);
+}
+
+int run_command(const std::string& program, const std::vector<Subcommand>& all, int argc,
+                const char* const* argv) {
   CommonOptions common;
   const Subcommand* chosen = nullptr;
-  CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
+  CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", program};
   add_common_options(app, common);
-  const std::vector<Subcommand> all = all_subcommands();
   for (const Subcommand& subcommand : all) {
     CLI::App* added = app.add_subcommand(subcommand.name, subcommand.title);
     for (const Option& option : subcommand.options) add(*added, option);
@@ -145,18 +149,17 @@ int run_command(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const std::string unknown = misspelt(app);
-    return refuse(((unknown.empty() ? error.what() : unknown) + "; see springstab --help").c_str());
+    return refuse(program, (unknown.empty() ? error.what() : unknown) + "; see " + program + " --help");
   } catch (const InputError& error) {
-    return refuse(error.what());
+    return refuse(program, error.what());
   } catch (const UnknownMethod& error) {
-    return refuse(unknown_method(error).c_str());
+    return refuse(program, unknown_method(error));
   } catch (const std::invalid_argument& error) {
-    return refuse(error.what());
+    return refuse(program, error.what());
   } catch (const std::bad_alloc&) {
-    return refuse("not enough memory for this input");
+    return refuse(program, "not enough memory for this input");
   } catch (const std::exception& error) {
-    std::cerr << "springstab: internal error: " << error.what() << '\n';
-    return internal_error;
+    return refuse(program, std::string("internal error: ") + error.what(), internal_error);
   }
 }
 

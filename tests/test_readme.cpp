@@ -307,8 +307,9 @@ BOOST_AUTO_TEST_CASE(options_exist) {
     help += springstab(name + " --help").out;
   const std::regex option("(--[a-z][a-z_-]*)");
   std::set<std::string> known = matches(help, option);
-  // Of CMake, pip and Google Benchmark.
-  known.insert({"--build", "--install", "--prefix", "--no-build-isolation", "--benchmark_filter"});
+  // Of CMake, pip, Google Benchmark and Open MPI.
+  known.insert({"--build", "--install", "--prefix", "--no-build-isolation", "--benchmark_filter",
+                "--allow-run-as-root", "--oversubscribe"});
   for (const std::filesystem::path& page : pages())
     for (const std::string& name : matches(content_of(page), option))
       BOOST_TEST(known.contains(name), page.filename() << " speaks of " << name);

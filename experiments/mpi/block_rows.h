@@ -16,6 +16,9 @@ class BlockRows {
   /// is that of its row i, among all free particles. Each call takes up where the last one ended.
   void append(const BlockSparseMatrix& part, const std::vector<long>& number, const IndexRange& own);
 
+  /// Appends rows without blocks.
+  void append_empty(std::size_t rows) { start_.insert(start_.end(), rows, start_.back()); }
+
   /// The rows of all ranks, `all` in all; nothing is left here.
   OwnedMat assemble(long all) &&;
 

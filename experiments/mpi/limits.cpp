@@ -146,6 +146,37 @@ std::unique_ptr<GeneralDamping> general_damping(const System& system, std::share
       system.model, safety, ArpackOptions{.tolerance = tolerance});
 }
 
+StructureLimitsOptions wanted_of(const CommonOptions& common, const LimitsOptions& options,
+                                 const System& system) {
+  StructureLimitsOptions wanted{.safety = options.safety,
+                                .seed = common.seed,
+                                .digits = options.digits,
+                                .certify_loss = options.certify_loss,
+                                .max_step = options.max_step};
+  if (wanted.digits == 0 && system.size >= many_unknowns) wanted.digits = usual_digits;
+  return wanted;
+}
+
+void check_mass(const System& system, DistributedProof& proof) {
+  if (!system.mass || proof.pieces() > 0 || proof.holds(1, 0, 0)) return;
+  together([] {
+    throw std::invalid_argument("the mass matrix is not positive definite, expected a positive definite one");
+  });
+}
+
+void tell(const System& system, StructureLimits& limits, const std::vector<LimitsRow>& rows, double safety,
+          const Cost& cost, long pieces, const std::optional<long>& above, bool as_json) {
+  const MatricesSize size{system.size};
+  if (!as_json) {
+    print_limits(limits, size, rows, safety, scene_text(system));
+    return print_ranks(cost, pieces, above);
+  }
+  Json json = limits_json(limits, size, rows, safety, system.mesh ? mesh_json(*system.mesh) : Json());
+  add_scene(system, json);
+  json["mpi"] = ranks_json(cost, pieces, above);
+  print_json(json);
+}
+
 int answer(const CommonOptions& common, const LimitsOptions& options, const std::vector<Method>& methods) {
   Clock clock;
   Cost cost;
@@ -156,26 +187,18 @@ int answer(const CommonOptions& common, const LimitsOptions& options, const std:
   if (system.mesh) print_mesh_notes(*system.mesh), print_size_warning(*system.mesh);
   cost.assembly = clock.lap();
 
-  StructureLimitsOptions wanted{.safety = options.safety,
-                                .seed = common.seed,
-                                .digits = options.digits,
-                                .certify_loss = options.certify_loss,
-                                .max_step = options.max_step};
-  if (wanted.digits == 0 && system.size >= many_unknowns) wanted.digits = usual_digits;
+  waiting.now("k0");
+  const StructureLimitsOptions wanted = wanted_of(common, options, system);
   const auto range = std::make_shared<const SlepcRange>(
       system, search_tolerance(wanted.digits, wanted.k0_tolerance), common.seed);
-  waiting.now("k0");
   StiffestMode mode = range->stiffest_mode();
   cost.k0 = clock.lap();
+
   waiting.now("proofs");
   set_loop_threads(threads_a_rank(common.threads));
   const double loss = 2 * options.certify_loss;
   DistributedProof proof(system, loss);
-  if (system.mass && system.size <= DistributedProof::one_piece && !proof.holds(1, 0, 0))
-    together([] {
-      throw std::invalid_argument(
-          "the mass matrix is not positive definite, expected a positive definite one");
-    });
+  check_mass(system, proof);
   prove(*range, loss, proof, mode);
   const std::optional<long> above = second_opinion(system, mode);
   cost.proofs = clock.lap();
@@ -185,17 +208,7 @@ int answer(const CommonOptions& common, const LimitsOptions& options, const std:
   const std::vector<LimitsRow> rows = rows_of(limits, methods, waiting);
   cost.methods = clock.lap();
   cost.bytes = most_bytes();
-  const MatricesSize size{system.size};
-  if (common.json) {
-    Json json =
-        limits_json(limits, size, rows, options.safety, system.mesh ? mesh_json(*system.mesh) : Json());
-    add_scene(system, json);
-    json["mpi"] = ranks_json(cost, proof.pieces(), above);
-    print_json(json);
-  } else {
-    print_limits(limits, size, rows, options.safety, scene_text(system));
-    print_ranks(cost, proof.pieces(), above);
-  }
+  tell(system, limits, rows, options.safety, cost, proof.pieces(), above, common.json);
   return status_of(limits, rows, options);
 }
 

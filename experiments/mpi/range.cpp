@@ -58,7 +58,7 @@ OwnedVec start_of(const System& system, std::uint64_t seed, const Eigen::VectorX
   for (PetscInt i = own.first; i < own.last; ++i)
     entries[i - own.first] = random_entry((seed << 32) + static_cast<std::uint64_t>(i));
   petsc(VecRestoreArray(start, &entries));
-  if (all_of(near.size() == 0 && own.last > own.first)) return start;
+  if (all_of(near.size() == 0)) return start;
   PetscReal norm = 0;
   petsc(VecNorm(start, NORM_2, &norm));
   petsc(VecScale(start, 1e-2 / norm));

@@ -21,17 +21,20 @@ constexpr long reach = 2;  // of an element, in rows or columns
 // The rows of a rank: of K and C, and what its particles weigh.
 struct SceneRows {
   BlockRows stiffness, damping;
-  bool has_damping = false;
   std::vector<double> mass;
 
   /// Of a part of the scene; number[i] is that of its free particle i.
   void append(Model& part, const std::vector<long>& number, const IndexRange& own) {
     const auto linear = part.scene()->linearization(part.initial_state());
     stiffness.append(linear->stiffness(), number, own);
-    if (const BlockSparseMatrix* own_damping = linear->own_damping())
-      damping.append(*own_damping, number, own), has_damping = true;
+    const std::size_t before = mass.size();
     for (std::size_t i = 0; i < number.size(); ++i)
       if (own.holds(number[i])) mass.push_back(linear->mass()[i]);
+    if (const BlockSparseMatrix* own_damping = linear->own_damping()) {
+      damping.append(*own_damping, number, own);
+    } else {
+      damping.append_empty(mass.size() - before);
+    }
   }
 };
 
@@ -182,15 +185,21 @@ System grid_system(const SceneDescription& description) {
 
 // --- meshes ---
 
+// Calls visit(i, j) for free particles that a term couples.
+template <class Visit>
+void for_each_coupling(const Scene& scene, const Visit& visit) {
+  const auto all = [&](const auto& terms) {
+    for (const auto& term : terms)
+      for (const auto& [i, j] : term->couplings()) visit(i, j);
+  };
+  all(scene.terms().elastic);
+  all(scene.terms().damping);
+}
+
 // Who has which free particle: parts of the graph of what couples them.
 std::vector<int> owners_of(const Scene& scene) {
   std::vector<std::vector<int>> near(static_cast<std::size_t>(scene.free_particles()));
-  const auto add = [&](const auto& terms) {
-    for (const auto& term : terms)
-      for (const auto& [i, j] : term->couplings()) near[i].push_back(j), near[j].push_back(i);
-  };
-  add(scene.terms().elastic);
-  add(scene.terms().damping);
+  for_each_coupling(scene, [&](int i, int j) { near[i].push_back(j), near[j].push_back(i); });
   Graph graph;
   for (std::vector<int>& list : near) {
     std::sort(list.begin(), list.end());
@@ -205,16 +214,44 @@ std::vector<int> owners_of(const Scene& scene) {
 std::vector<char> own_and_near(const Scene& scene, const std::vector<int>& owner) {
   std::vector<char> wanted(owner.size());
   for (std::size_t i = 0; i < owner.size(); ++i) wanted[i] = owner[i] == rank();
-  const auto add = [&](const auto& terms) {
-    for (const auto& term : terms)
-      for (const auto& [i, j] : term->couplings()) {
-        if (owner[i] == rank()) wanted[j] = 1;
-        if (owner[j] == rank()) wanted[i] = 1;
-      }
-  };
-  add(scene.terms().elastic);
-  add(scene.terms().damping);
+  for_each_coupling(scene, [&](int i, int j) {
+    if (owner[i] == rank()) wanted[j] = 1;
+    if (owner[j] == rank()) wanted[i] = 1;
+  });
   return wanted;
+}
+
+// Of a rank: which particles of the mesh it holds fast, what the numbers of the others are, and which are its
+// own.
+struct MeshPart {
+  std::vector<int> held;
+  std::vector<long> number;  // part by part, in the order of the particles
+  IndexRange own{0, 0};
+};
+
+MeshPart own_part(const Subject& subject) {
+  const Scene& scene = *subject.scene();
+  const std::vector<int> owner = owners_of(scene);
+  std::vector<long> number(owner.size());
+  MeshPart mine;
+  long next = 0;
+  for (int part = 0; part < ranks(); ++part) {
+    const long first = next;
+    for (std::size_t i = 0; i < owner.size(); ++i)
+      if (owner[i] == part) number[i] = next++;
+    if (part == rank()) mine.own = {first, next};
+  }
+  const std::vector<char> wanted = own_and_near(scene, owner);
+  for (int particle = 0, free = 0; particle < scene.particles(); ++particle) {
+    const bool pinned = std::ranges::binary_search(subject.pinned(), particle);
+    if (pinned || !wanted[free]) {
+      mine.held.push_back(particle);
+    } else {
+      mine.number.push_back(number[free]);
+    }
+    if (!pinned) ++free;
+  }
+  return mine;
 }
 
 System mesh_system(const SceneDescription& description) {
@@ -222,35 +259,10 @@ System mesh_system(const SceneDescription& description) {
   std::unique_ptr<Subject> subject;
   together([&] {
     subject = std::make_unique<Subject>(description);
-    const Scene& scene = *subject->scene();
-    const std::vector<int> owner = owners_of(scene);
-    std::vector<long> number(owner.size());  // part by part
-    IndexRange own{0, 0};
-    long next = 0;
-    for (int part = 0; part < ranks(); ++part) {
-      if (part == rank()) own.first = next;
-      for (std::size_t i = 0; i < owner.size(); ++i)
-        if (owner[i] == part) number[i] = next++;
-      if (part == rank()) own.last = next;
-    }
-    if (own.first == own.last) return;
-    const std::vector<char> wanted = own_and_near(scene, owner);
-    std::vector<int> held;
-    std::vector<long> kept;
-    for (int particle = 0, free = 0; particle < scene.particles(); ++particle) {
-      if (std::ranges::binary_search(subject->pinned(), particle)) {
-        held.push_back(particle);
-        continue;
-      }
-      if (wanted[free]) {
-        kept.push_back(number[free]);
-      } else {
-        held.push_back(particle);
-      }
-      ++free;
-    }
-    Model part = subject->holding(held);
-    rows.append(part, kept, own);
+    const MeshPart mine = own_part(*subject);
+    if (mine.number.empty()) return;
+    Model part = subject->holding(mine.held);
+    rows.append(part, mine.number, mine.own);
   });
   System system = assembled(std::move(rows), subject->scene()->free_particles(), subject->damping());
   system.scene_size = subject->scene_size();

@@ -215,12 +215,12 @@ BOOST_AUTO_TEST_CASE(failures_are_one_line_and_exit_status_2) {
       {"--stiffness K.mtx --mass massless.mtx", "the mass of unknown 2 is 0, expected a positive one"},
       {"--grid 5x5 --frobnicate", "unknown option '--frobnicate'"},
       {"--grid 5x5 --pin 99", "--pin: pinned particle 99 does not exist"},
-      {"--grid 3x3 --pin 0-8", "all particles are pinned"},
+      {"--grid 3x3 --pin 0-8", "--pin: all particles are pinned"},
       {"--grid 5x5 --explain", "--explain: is not served by springstab-mpi"},
       {"--grid 5x5 --method rk5", "unknown method 'rk5'"},
       {"--grid 5x5 --method implicit-damping-euler:part=diagonal", "--method: implicit-damping-euler"},
       {"contact.json", "contact.json: has contact, which is not served"},
-      {"--grid 5x5 -eps_type nonsense", "rank 0: PETSc: Unable to find requested EPS type nonsense"},
+      {"--grid 5x5 -eps_type nonsense", "rank 0: PETSc: Unknown EPS type given: nonsense"},
       {"", "input: nothing was given"}};
   for (const auto& [arguments, line] : wrong)
     for (const int ranks : {1, 2}) BOOST_TEST_CONTEXT(arguments << " on " << ranks) {

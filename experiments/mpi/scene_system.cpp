@@ -169,7 +169,8 @@ System grid_system(const SceneDescription& description) {
     const GridLayout layout(grid, pinned, ranks());
     particles = layout.numbers(ranks() - 1).last;
     if (particles == 0)
-      throw std::invalid_argument("all particles are pinned, expected at least one that can move");
+      throw InputError(description.pins.source, 0,
+                       "all particles are pinned, expected at least one that can move");
     const Subject sample = sample_of(description);
     model = sample.damping();
     size = whole_size(*sample.scene_size(), grid, description.scale);

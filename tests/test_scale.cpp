@@ -321,7 +321,7 @@ BOOST_AUTO_TEST_CASE(pieces_of_parts_that_see_their_neighbours_are_those_of_the_
   };
   const double k0 = membrane_k0(n);
   int proved = 0, refused = 0;
-  for (double above = -4e-4; above < 6e-3; above += 4e-4) {
+  for (double above = -3e-4; above < 3e-3; above += 1e-4) {
     const SparseMatrix q = shifted(a, k0 * (1 + above));
     const bool all = whole.prove(q);
     BOOST_TEST((half_proves(true, q) && half_proves(false, q)) == all, above);
@@ -329,7 +329,7 @@ BOOST_AUTO_TEST_CASE(pieces_of_parts_that_see_their_neighbours_are_those_of_the_
     if (above <= 0) BOOST_TEST(!all, above);
   }
   BOOST_TEST(proved > 3);
-  BOOST_TEST(refused > 2);  // also what is true
+  BOOST_TEST(refused > 6);  // also what is true, but too near
 }
 #endif
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "experiments/command/shared_options.h"
 #include "experiments/inputs/mesh_report.h"
@@ -15,56 +16,6 @@
 namespace springstab {
 namespace {
 
-Json damping_json(const DampingModel& damping) {
-  Json json{{"kind", name(damping.kind)}};
-  if (damping.kind == DampingModel::Kind::general) return json;
-  json["d0"] = number(damping.d0);
-  json["alpha"] = damping.kind == DampingModel::Kind::designed ? Json("designed") : number(damping.alpha);
-  return json;
-}
-
-Json k0_json(const StiffestMode& k0, std::optional<int> digits) {
-  Json json{{"value", nullptr},
-            {"status", "not converged"},
-            {"value_kind", nullptr},
-            {"residual", nullptr},
-            {"upper_bound", number(k0.upper_bound)},
-            {"bound", name(k0.bound_kind)},
-            {"bounds",
-             {{"inertia", number(factorized_bound(k0, BoundKind::inertia))},
-              {"gershgorin", number(gershgorin_bound(k0))}}},
-            {"products", k0.products},
-            {"smallest", number(k0.smallest)}};
-  if (digits) json["digits"] = *digits;
-  if (const auto bound = factorized_bound(k0, BoundKind::pieces)) json["bounds"]["pieces"] = *bound;
-  if (!k0.converged) return json;
-  json["value"] = number(k0.value);
-  json["status"] = "converged";
-  json["value_kind"] = value_kind(k0);
-  json["residual"] = number(k0.residual);
-  return json;
-}
-
-Json limits_json(std::string_view method, const MethodLimits& limits, double d0) {
-  Json json{{"name", method},
-            {"status", name(limits.status)},
-            {"h_max", number(limits.h_max)},
-            {"h_max_source", limits.h_max ? Json(name(limits.source)) : Json()},
-            {"h_certified", number(limits.h_certified)},
-            {"h_certified_source", limits.h_certified ? Json(name(limits.proof)) : Json()},
-            {"reason", limits.h_certified ? Json() : Json(limits.unproved)},
-            {"recommended_step", number(limits.recommended)},
-            {"designed", nullptr},
-            {"h_every_pose", number(limits.every_pose)},
-            {"transient_growth", number(limits.transient_growth)}};
-  if (limits.designed)
-    json["designed"] = {
-        {"h_max", number(limits.designed->h_max > 0 ? std::optional(limits.designed->h_max) : std::nullopt)},
-        {"alpha", number(limits.designed->alpha)},
-        {"d0", number(d0)}};
-  return json;
-}
-
 std::vector<std::string> names_of(const std::vector<Method>& methods) {
   std::vector<std::string> names;
   for (const Method& method : methods) names.push_back(method.name());
@@ -73,6 +24,10 @@ std::vector<std::string> names_of(const std::vector<Method>& methods) {
 
 bool nothing_limits(const LimitsRow& row) { return row.limits.status == LimitStatus::unlimited; }
 
+MatricesSize size_of(const StructuralMatrices& s) {
+  return {static_cast<long>(s.size()), static_cast<long>(s.condensed), s.condensed_rate, s.symmetric};
+}
+
 Structure structure_at(Subject& subject, const State<Vector>& start) {
   Structure structure = subject.structure(start);
   structure.every_pose = subject.every_pose();
@@ -80,10 +35,6 @@ Structure structure_at(Subject& subject, const State<Vector>& start) {
 }
 
 }  // namespace
-
-std::vector<Method> methods_of(const LimitsOptions& options) {
-  return options.method.empty() ? methods_of(options.methods) : std::vector<Method>{options.method};
-}
 
 void check_limits_options(const CommonOptions& common, const LimitsOptions& options) {
   if (!(options.certify_loss >= 1e-5 && options.certify_loss < 1))
@@ -116,10 +67,7 @@ LimitsAnswer::LimitsAnswer(const CommonOptions& common, const LimitsOptions& opt
   Waiting waiting("limits", common.quiet);
   waiting.now("k0");
   limits_.k0();
-  for (const Method& method : methods_) {
-    waiting.now(method.name());
-    rows_.push_back({method, limits_.limits(method)});
-  }
+  rows_ = rows_of(limits_, methods_, waiting);
   if (subject.contact()) contact_.emplace(subject, start_, names_of(methods_), options.safety);
   set_loop_threads(1);  // what is measured is on one thread
   cheapest_options_ = cheapest_options(options, cpu_seconds() - begin);
@@ -132,27 +80,10 @@ LimitsAnswer::LimitsAnswer(const CommonOptions& common, const LimitsOptions& opt
   stiffest_.emplace(options_, common, limits_, subject, start_);
 }
 
-Json LimitsAnswer::json_of_structure() {
-  const auto& [matrices, damping, every_pose] = limits_.structure();
-  Json list = Json::array();
-  for (const LimitsRow& row : rows_) list.push_back(limits_json(row.method.name(), row.limits, damping.d0));
-  Json json{{"degrees_of_freedom", matrices.size()},
-            {"condensed", matrices.condensed},
-            {"condensed_rate", matrices.condensed_rate > 0 ? number(matrices.condensed_rate) : Json()},
-            {"k0", k0_json(limits_.k0(), limits_.digits())},
-            {"stiffness_indefinite", limits_.k0().indefinite},
-            {"symmetric", matrices.symmetric},
-            {"growth_rate", number(limits_.growth())},
-            {"damping", damping_json(damping)},
-            {"safety", options_.safety},
-            {"mesh", mesh_json(subject_)},
-            {"methods", list}};
-  add_size(json, subject_);
-  return json;
-}
-
 Json LimitsAnswer::json() {
-  Json json = json_of_structure();
+  Json json = limits_json(limits_, size_of(limits_.structure().matrices), rows_, options_.safety,
+                          mesh_json(subject_));
+  add_size(json, subject_);
   if (contact_) json["contact"] = contact_->json();
   if (options_.error || options_.frame_rate) {
     for (std::size_t i = 0; i < rows_.size(); ++i)
@@ -181,12 +112,19 @@ std::vector<std::string> LimitsAnswer::remarks() {
   return all;
 }
 
-// What was asked for and is not there is no answer.
-int LimitsAnswer::status() {
-  const bool missing = std::ranges::any_of(rows_, [&](const LimitsRow& row) {
-    return (!options_.method.empty() && !row.limits.h_max) || (options_.certify && !row.limits.h_certified);
-  });
-  return limits_.k0().converged && !missing ? done : no_answer;
+std::string LimitsAnswer::text_of() {
+  std::ostringstream out;
+  print_limits(out, limits_, size_of(limits_.structure().matrices), rows_, options_.safety,
+               size_text(subject_));
+  if (contact_) out << contact_->text_of();
+  if (limits_.k0().converged) {
+    print_cheapest(out, *cheapest_, limits_, methods_, cheapest_options_);
+    for_step_->print(out);
+    stiffest_->print(out);
+  }
+  return out.str();
 }
+
+int LimitsAnswer::status() { return status_of(limits_, rows_, options_); }
 
 }  // namespace springstab

@@ -10,19 +10,10 @@
 #include "experiments/contact_report.h"
 #include "experiments/for_step_report.h"
 #include "experiments/limits_options.h"
+#include "experiments/limits_report.h"
 #include "experiments/stiffest_report.h"
 
 namespace springstab {
-
-/// The one method that was asked for, or those listed. Throws std::invalid_argument for an unknown one.
-std::vector<Method> methods_of(const LimitsOptions& options);
-/// Throws InputError for values that are none.
-void check_limits_options(const CommonOptions& common, const LimitsOptions& options);
-
-struct LimitsRow {
-  Method method;
-  MethodLimits limits;  // all unknown if k0 is not
-};
 
 class LimitsAnswer {
  public:
@@ -49,8 +40,6 @@ class LimitsAnswer {
   int status();
 
  private:
-  Json json_of_structure();
-
   const CommonOptions& common_;
   LimitsOptions options_;
   Subject& subject_;

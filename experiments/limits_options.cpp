@@ -7,7 +7,9 @@
 
 namespace springstab {
 
-Subcommand limits_command() {
+Subcommand limits_command() { return limits_command(run_limits); }
+
+Subcommand limits_command(std::function<int(const CommonOptions&, const LimitsOptions&)> run) {
   const auto o = std::make_shared<LimitsOptions>();
   return {
       .name = "limits",
@@ -92,7 +94,7 @@ Subcommand limits_command() {
            Option("--picture", &o->picture, "the scene, drawn by gnuplot").shown_as("FILE.png"),
            Option("--mode", &o->mode, "writes the stiffest mode, vertex by vertex, as CSV")
                .shown_as("FILE")}),
-      .run = [o](const CommonOptions& common) { return run_limits(common, *o); }};
+      .run = [o, run](const CommonOptions& common) { return run(common, *o); }};
 }
 
 }  // namespace springstab

@@ -1,10 +1,12 @@
 // What `springstab limits` is asked.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "experiments/command/options.h"
+#include "experiments/command/subcommand_list.h"
 #include "experiments/inputs/subject.h"
 
 namespace springstab {
@@ -26,6 +28,12 @@ struct LimitsOptions {
   std::string mode;                    // file for the stiffest mode
   std::string picture;                 // file for the scene: .png
 };
+
+/// The subcommand, run by whoever answers.
+Subcommand limits_command(std::function<int(const CommonOptions&, const LimitsOptions&)> run);
+
+/// Throws InputError for numbers that are out of range and options that exclude each other.
+void check_limits_options(const CommonOptions& common, const LimitsOptions& options);
 
 /// Stable steps and damping of a structure; returns an ExitStatus.
 int run_limits(const CommonOptions& common, const LimitsOptions& options);

@@ -160,7 +160,7 @@ BOOST_AUTO_TEST_CASE(symplectic_eulers_limit_is_the_dense_truth) {
       damped += h < 0.99 * 2 / std::sqrt(stiffest_mode(s).value);
 
       DefinitenessProof proof(s);
-      const double certified = proved_limit(proof, symplectic_condition(), h).value();
+      const double certified = proved_limit(proof.test(), symplectic_condition(), h).value();
       BOOST_TEST(certified < h);
       BOOST_TEST(certified > (1 - 1e-6) * h);
       // Mechanisms (K v = D v = 0) have the double eigenvalue 1, which rounding moves by √ε of A's entries.
@@ -405,7 +405,7 @@ BOOST_AUTO_TEST_CASE(a_proof_is_searched_far_below_a_wrong_guess) {
       const double h = symplectic_truth(s);
       DefinitenessProof proof(s);
       for (const double guess : {1.1, 1.7, 20.0}) {
-        const double proved = proved_limit(proof, symplectic_condition(), guess * h).value();
+        const double proved = proved_limit(proof.test(), symplectic_condition(), guess * h).value();
         BOOST_TEST(proved < h);
         BOOST_TEST(proved >= (1 - 1e-3 * guess) * h);  // gaps of the guess
       }

@@ -509,6 +509,25 @@ BOOST_AUTO_TEST_CASE(a_matrix_market_file_is_read_with_all_that_other_programs_w
        Eigen::Matrix2d{{0, -1}, {1, 0}}));
 }
 
+BOOST_AUTO_TEST_CASE(rows_of_a_matrix_are_those_of_the_whole) {
+  const std::string entries = "4 4 5\n1 1 2\n3 1 -1\n3 2 7\n4 3 0.5\n4 1 6\n";
+  for (const char* kind : {"coordinate real general", "coordinate real symmetric"}) {
+    const std::string text = std::string("%%MatrixMarket matrix ") + kind + "\n" + entries;
+    const Eigen::MatrixXd whole = matrix(text);
+    for (long first = 0; first <= 4; ++first)
+      for (long last = first; last <= 4; ++last) {
+        const auto rows = springstab::parse_matrix_market_rows("file", text, [&](int all) {
+          BOOST_TEST(all == 4);
+          return springstab::IndexRange{first, last};
+        });
+        BOOST_TEST(rows.first == first);
+        BOOST_TEST(rows.all_rows == 4);
+        BOOST_TEST(rows.columns == 4);
+        BOOST_TEST((rows.own.toDense() == whole.middleRows(first, last - first)));
+      }
+  }
+}
+
 BOOST_AUTO_TEST_CASE(entries_at_one_position_are_summed_where_that_is_asked) {
   using springstab::Duplicates;
   const std::string general =

@@ -1,6 +1,7 @@
 // What README.md and the pages of docs/ show is true. Every `$ build/springstab …` in a code block is run, in
-// a folder that holds the project's experiments/, and its output held against the lines that follow; scenes
-// are run, methods' files and C++ are those of the project, options exist, and links lead somewhere.
+// a folder that holds the project's experiments/, and its output held against the lines that follow, and so
+// is every `$ mpirun -np N build/springstab-mpi …` where that program was built; scenes are run, methods'
+// files and C++ are those of the project, options exist, and links lead somewhere.
 //
 // A line of nothing but … stands for any lines. Words must be equal; numbers agree to 1e-6, what contact
 // counts to 1 %, but for those that a clock or the last digits of a sum decide: CPU-seconds, the times of
@@ -29,6 +30,7 @@ using Lines = std::vector<std::string>;
 struct Shown {
   std::string arguments;
   Lines output;
+  std::string ranks{};  // of springstab-mpi; empty for springstab itself
 };
 
 // The method that a reader is told to add.
@@ -62,12 +64,12 @@ Lines lines_of(std::istream& in) {
 // The commands of the code blocks. One that is interrupted (^C) and resumed, or that shows a method which the
 // reader is told to add, is not run.
 std::vector<Shown> commands(const Lines& page) {
-  const std::string prompt = "$ build/springstab ";
+  static const std::regex prompt(R"(\$ (?:mpirun -np (\d+) build/springstab-mpi|build/springstab) (.*))");
   std::vector<Shown> found;
   bool in_output = false;
   for (const std::string& line : page) {
-    if (line.starts_with(prompt)) {
-      found.push_back({line.substr(prompt.size()), {}});
+    if (std::smatch match; std::regex_match(line, match, prompt)) {
+      found.push_back({match.str(2), {}, match.str(1)});
       in_output = true;
     } else if (line.starts_with("```")) {
       in_output = false;
@@ -207,6 +209,13 @@ std::set<std::string> matches(const std::string& text, const std::regex& pattern
   return found;
 }
 
+// Of springstab-mpi, as Open MPI wants to be told of root and of few cores.
+std::string mpi_line(const std::string& program, const Shown& shown) {
+  return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 "
+         "OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_mpi_yield_when_idle=1 mpirun -q -np " +
+         shown.ranks + " '" + program + "' " + shown.arguments;
+}
+
 /// In a folder of its own, with the project's experiments/ and the scenes' meshes.
 struct InAFolder {
   InAFolder() {
@@ -223,11 +232,17 @@ BOOST_AUTO_TEST_SUITE(readme)
 
 BOOST_AUTO_TEST_CASE(commands_print_what_the_pages_show) {
   std::size_t run = 0;
+  const std::string mpi_program = command_path() + "-mpi";
   for (const std::filesystem::path& page : pages()) {
     const InAFolder here;
     std::ifstream file(page);
     for (const Shown& shown : commands(lines_of(file))) {
-      const Outcome outcome = here.springstab(shown.arguments);
+      if (!shown.ranks.empty() && !std::filesystem::exists(mpi_program)) {
+        BOOST_TEST_MESSAGE("skipped, for springstab-mpi was not built: " << shown.arguments);
+        continue;
+      }
+      const Outcome outcome = shown.ranks.empty() ? here.springstab(shown.arguments)
+                                                  : here.springstab.shell(mpi_line(mpi_program, shown));
       std::istringstream printed(outcome.err + outcome.out);
       const auto wrong = difference(shown.output, lines_of(printed));
       BOOST_TEST(!wrong, page.filename() << ": springstab " << shown.arguments << ":\n"
@@ -292,8 +307,9 @@ BOOST_AUTO_TEST_CASE(options_exist) {
     help += springstab(name + " --help").out;
   const std::regex option("(--[a-z][a-z_-]*)");
   std::set<std::string> known = matches(help, option);
-  // Of CMake, pip and Google Benchmark.
-  known.insert({"--build", "--install", "--prefix", "--no-build-isolation", "--benchmark_filter"});
+  // Of CMake, pip, Google Benchmark and Open MPI.
+  known.insert({"--build", "--install", "--prefix", "--no-build-isolation", "--benchmark_filter",
+                "--allow-run-as-root", "--oversubscribe"});
   for (const std::filesystem::path& page : pages())
     for (const std::string& name : matches(content_of(page), option))
       BOOST_TEST(known.contains(name), page.filename() << " speaks of " << name);

@@ -302,6 +302,39 @@ BOOST_AUTO_TEST_CASE(one_piece_loses_nothing) {
   BOOST_TEST(one.prove(shifted(a, membrane_k0(50) * (1 + 1e-9))));
   BOOST_TEST(!one.prove(shifted(a, membrane_k0(50))));
 }
+
+// Two ranks with a half of the membrane each, which see no farther than they must: their verdicts together
+// are that of the same pieces of the whole.
+BOOST_AUTO_TEST_CASE(pieces_of_parts_that_see_their_neighbours_are_those_of_the_whole) {
+  const int n = 80, layers = 2, half = n * n / 2 + 13;
+  const SparseMatrix a = membrane(n);
+  const Graph graph = graph_of(a, 1);
+  std::vector<int> part(static_cast<std::size_t>(n * n));  // two of each half
+  for (int i = 0; i < n * n; ++i) part[i] = 2 * (i >= half) + (i % n > n / 3);
+  const Pieces whole(graph, part, 4, layers);
+  BOOST_TEST(whole.count() == 4);
+  const int seen = n * (2 * layers + 1);  // a row of the membrane an edge
+  const auto half_proves = [&](bool lower, const SparseMatrix& q) {
+    const int first = lower ? 0 : half - seen, last = lower ? half + seen : n * n;
+    const SparseMatrix around = q.middleRows(first, last - first).middleCols(first, last - first);
+    std::vector<int> name;  // own ones first
+    for (int i = first; i < last; ++i) name.push_back(lower ? part[i] : (part[i] + 2) % 4);
+    const Pieces own(graph_of(around, 1), name, 2, layers);
+    BOOST_TEST(own.count() == 2);
+    return own.prove(around);
+  };
+  const double k0 = membrane_k0(n);
+  int proved = 0, refused = 0;
+  for (double above = -3e-4; above < 3e-3; above += 1e-4) {
+    const SparseMatrix q = shifted(a, k0 * (1 + above));
+    const bool all = whole.prove(q);
+    BOOST_TEST((half_proves(true, q) && half_proves(false, q)) == all, above);
+    ++(all ? proved : refused);
+    if (above <= 0) BOOST_TEST(!all, above);
+  }
+  BOOST_TEST(proved > 3);
+  BOOST_TEST(refused > 6);  // also what is true, but too near
+}
 #endif
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -14,6 +14,7 @@ namespace {
 
 constexpr Eigen::Index shift_invert_limit = 20'000;
 constexpr double near_enough = 0.9;  // certified / estimate
+const StructuralMatrices unknown_matrices;
 constexpr std::string_view no_step = "no positive step is stable";
 
 // The step to which oscillations that grow by themselves are followed, not outgrown: that of their mirror
@@ -44,8 +45,22 @@ GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& 
       proofs_(proofs),
       first_gap_(proof_gap(options)),
       s_(s),
+      size_(s.size()),
       options_(options),
       certified_(s, options) {}
+
+GeneralDamping::GeneralDamping(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof,
+                               const StiffestMode& k0, const DampingModel& damping, double safety,
+                               const ArpackOptions& options)
+    : k0_(k0),
+      damping_(damping),
+      safety_(safety),
+      proofs_(true),
+      first_gap_(proof_gap(options)),
+      s_(unknown_matrices),
+      size_(std::numeric_limits<Eigen::Index>::max()),
+      options_(options),
+      certified_(std::move(range), std::move(proof)) {}
 
 // One result serves all methods whose eigenvalues follow from the same region in the same way.
 MethodLimits GeneralDamping::limits(const Method& method) {
@@ -68,7 +83,10 @@ MethodLimits GeneralDamping::compute(const Method& method) {
     limits.unproved = "K or D is not symmetric";
   }
   if (takes_part(method, s_)) {
-    if (limits.unproved.empty()) add_split(method, limits);
+    if (&s_ == &unknown_matrices)
+      limits.unproved = "the part of the damping that is implicit is not known apart";
+    else if (limits.unproved.empty())
+      add_split(method, limits);
     return limits;
   }
   if (!limits.unproved.empty()) {
@@ -78,7 +96,7 @@ MethodLimits GeneralDamping::compute(const Method& method) {
   if (limits.status != LimitStatus::unknown) return limits;
   if (stability_region(method).matrix_form() == MatrixForm::none) {
     limits.unproved = "the method's eigenvalues under this damping are not those of scalar modes";
-    if (method.size() * s_.size() <= transition_limit_rows) add_estimate(method, limits);
+    if (size_ <= transition_limit_rows / method.size()) add_estimate(method, limits);
     add_proved_at_one_step(method, limits);
     return limits;
   }
@@ -86,7 +104,7 @@ MethodLimits GeneralDamping::compute(const Method& method) {
     add_exact(*condition, limits);
   } else {
     add_certified(method, limits);
-    if (s_.size() <= generator_limit) {
+    if (size_ <= generator_limit) {
       add_estimate(method, limits);
       add_lyapunov(method, limits);
     } else {
@@ -145,7 +163,7 @@ void GeneralDamping::add_split(const Method& method, MethodLimits& limits) {
     if (!limits.h_max) {
       limits.h_max = *h;
       DefinitenessProof proof(s);
-      if (proofs_) set_certified(proved_limit(proof, condition, *h), Proof::matrix_condition, limits);
+      if (proofs_) set_certified(proved_limit(proof.test(), condition, *h), Proof::matrix_condition, limits);
     }
     least = std::min(least, *h);
   }
@@ -175,7 +193,7 @@ const std::optional<std::vector<std::complex<double>>>& GeneralDamping::own_spec
 }
 
 std::optional<double> GeneralDamping::growth() {
-  if (s_.size() > generator_limit || !own_spectrum()) return std::nullopt;
+  if (size_ > generator_limit || !own_spectrum()) return std::nullopt;
   return growth_rate(*own_spectrum());
 }
 
@@ -213,7 +231,7 @@ void GeneralDamping::add_estimate(const Method& method, MethodLimits& limits) {
 // larger than theirs, nor smaller than what is proved: an estimate where the two are near each other, else
 // nothing.
 void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimits& limits) {
-  if (!limits.h_certified || s_.size() > shift_invert_limit) return;
+  if (!limits.h_certified || size_ > shift_invert_limit) return;
   struct Near {
     double limit;  // [s]
     std::complex<double> mu;
@@ -246,7 +264,7 @@ void GeneralDamping::add_estimate_near_boundary(const Method& method, MethodLimi
 // only guess a step to be proved.
 void GeneralDamping::add_proved_at_one_step(const Method& method, MethodLimits& limits) {
   if (!proofs_ || !method.has_magnitude()) return;
-  if (s_.size() > LyapunovSteps::unknowns_limit) {
+  if (size_ > LyapunovSteps::unknowns_limit) {
     limits.unproved =
         "the method's eigenvalues under this damping are not those of scalar modes, and there are too many "
         "unknowns for a Lyapunov proof";
@@ -268,7 +286,7 @@ void GeneralDamping::add_proved_at_one_step(const Method& method, MethodLimits& 
 
 // Where the polygons prove much less than what is true, and there are few unknowns.
 void GeneralDamping::add_lyapunov(const Method& method, MethodLimits& limits) {
-  if (!proofs_ || !limits.h_max || s_.size() > LyapunovSteps::unknowns_limit) return;
+  if (!proofs_ || !limits.h_max || size_ > LyapunovSteps::unknowns_limit) return;
   const double known = limits.h_certified.value_or(0);
   if (known > 0.999 * *limits.h_max) return;
   if (!lyapunov_) lyapunov_.emplace(s_);

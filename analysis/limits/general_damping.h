@@ -19,6 +19,9 @@ class GeneralDamping {
   /// `s`, with its damping, must outlive it. Without `proofs` nothing is certified, which is quicker.
   GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
                  double safety, bool proofs, const ArpackOptions& options = {});
+  /// Of a structure that only these know (CertifiedSteps): no eigenvalues of its motion, no Lyapunov proofs.
+  GeneralDamping(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof, const StiffestMode& k0,
+                 const DampingModel& damping, double safety, const ArpackOptions& options);
   GeneralDamping(StructuralMatrices&&, const StiffestMode&, const DampingModel&, double, bool,
                  const ArpackOptions& = {}) = delete;
 
@@ -47,8 +50,9 @@ class GeneralDamping {
   DampingModel damping_;
   double safety_;
   bool proofs_;
-  double first_gap_;  // of the proofs, relative to h
-  const StructuralMatrices& s_;
+  double first_gap_;             // of the proofs, relative to h
+  const StructuralMatrices& s_;  // empty where the matrices are not known
+  Eigen::Index size_;            // beyond all limits then
   ArpackOptions options_;
   std::vector<std::optional<std::vector<std::complex<double>>>> spectra_;  // of each stiffening, when needed
   CertifiedSteps certified_;

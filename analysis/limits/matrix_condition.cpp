@@ -24,7 +24,7 @@ double proof_gap(const ArpackOptions& options) { return std::max(1e-10, options.
 // Newton's method on λ_max, from above: a unit vector's own root is an upper bound, and the eigenvector at h
 // has the root to second order. The way there needs no accurate eigenvectors. With a < 0, too, every vector's
 // steps are those below its one positive root.
-std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& condition,
+std::optional<double> exact_limit(const ExtremePoints& range, const HalfPlane& condition,
                                   const Stiffening& stiffening, bool signed_damping) {
   const auto& [a, b, c] = condition;
   // A residual r leaves an error of about r² in λ, over the gap. The safety factor covers far more.
@@ -56,11 +56,11 @@ std::optional<double> exact_limit(const NumericalRange& range, const HalfPlane& 
   return h;
 }
 
-std::optional<double> proved_limit(DefinitenessProof& proof, const HalfPlane& condition, double h,
+std::optional<double> proved_limit(const DefinitenessTest& proof, const HalfPlane& condition, double h,
                                    double gap) {
   if (!std::isfinite(h)) return h;
   const auto holds = [&](double step) {
-    return proof.holds(condition.bound, condition.x * step, condition.y * step * step);
+    return proof(condition.bound, condition.x * step, condition.y * step * step);
   };
   double failed = 0;
   for (; !holds(h * (1 - gap)); gap = std::min(4 * gap, (1 + gap) / 2)) {
@@ -81,7 +81,7 @@ std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane&
   const std::optional<double> h = exact_limit(NumericalRange(s, options), condition);
   if (!h) return std::nullopt;
   DefinitenessProof proof(s);
-  return proved_limit(proof, condition, *h, gap);
+  return proved_limit(proof.test(), condition, *h, gap);
 }
 
 }  // namespace springstab

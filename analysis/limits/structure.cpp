@@ -31,15 +31,13 @@ bool is_negligible(const SparseMatrix& a, double tolerance, const Eigen::VectorX
   return true;
 }
 
-// The least-squares fit of D by d0 M + alpha K, scaled so that M and K have unit size.
-DampingModel rayleigh_fit(const StructuralMatrices& s) {
-  const double m = s.mass.norm(), k = s.stiffness.norm();
-  const double mk = k > 0 ? frobenius_product(s.mass, s.stiffness) / (m * k) : 0;
-  const Eigen::Matrix2d normal{{1, mk}, {mk, k > 0 ? 1.0 : 0.0}};
-  const Eigen::Vector2d right{frobenius_product(s.damping, s.mass) / m,
-                              k > 0 ? frobenius_product(s.damping, s.stiffness) / k : 0};
-  const Eigen::Vector2d c = normal.fullPivLu().solve(right);
-  return {DampingModel::Kind::rayleigh, c[0] / m, k > 0 ? c[1] / k : 0};
+DampingProducts products_of(const StructuralMatrices& s) {
+  return {s.mass.norm(),
+          s.stiffness.norm(),
+          s.damping.norm(),
+          frobenius_product(s.mass, s.stiffness),
+          frobenius_product(s.damping, s.mass),
+          frobenius_product(s.damping, s.stiffness)};
 }
 
 DampingModel model_of(const RayleighDamping& damping) {
@@ -49,21 +47,29 @@ DampingModel model_of(const RayleighDamping& damping) {
 
 }  // namespace
 
+// In units in which M and K have size 1.
+std::optional<DampingModel> rayleigh_fit(const DampingProducts& of) {
+  const double m = of.m, k = of.k;
+  const double mk = k > 0 ? of.mk / (m * k) : 0;
+  const Eigen::Matrix2d normal{{1, mk}, {mk, k > 0 ? 1.0 : 0.0}};
+  const Eigen::Vector2d right{of.dm / m, k > 0 ? of.dk / k : 0};
+  const Eigen::Vector2d c = normal.fullPivLu().solve(right);
+  DampingModel fit{DampingModel::Kind::rayleigh, c[0] / m, k > 0 ? c[1] / k : 0};
+  if (fit.d0 < 0 && -fit.d0 * m <= rayleigh_tolerance * of.d) fit.d0 = 0;
+  if (fit.alpha < 0 && -fit.alpha * k <= rayleigh_tolerance * of.d) fit.alpha = 0;
+  return fit.d0 >= 0 && fit.alpha >= 0 ? std::optional(fit) : std::nullopt;
+}
+
 DampingModel classify_damping(const StructuralMatrices& s) {
   if (!s.has_damping()) return {};
   if (!s.symmetric) return {DampingModel::Kind::general, 0, 0, false};
-  constexpr double tolerance = 1e-12;
   const StructuralMatrices unit = unit_damping(s);
-  DampingModel fit = rayleigh_fit(unit);
-  const double size = unit.damping.norm();
-  if (fit.d0 < 0 && -fit.d0 * unit.mass.norm() <= tolerance * size) fit.d0 = 0;
-  if (fit.alpha < 0 && -fit.alpha * unit.stiffness.norm() <= tolerance * size) fit.alpha = 0;
-  if (fit.d0 >= 0 && fit.alpha >= 0) {
-    const SparseMatrix rest = unit.damping - fit.d0 * unit.mass - fit.alpha * unit.stiffness;
+  if (const auto fit = rayleigh_fit(products_of(unit))) {
+    const SparseMatrix rest = unit.damping - fit->d0 * unit.mass - fit->alpha * unit.stiffness;
     const Eigen::VectorXd sizes = Eigen::VectorXd(unit.damping.diagonal()).cwiseAbs() +
-                                  fit.d0 * Eigen::VectorXd(unit.mass.diagonal()) +
-                                  fit.alpha * Eigen::VectorXd(unit.stiffness.diagonal()).cwiseAbs();
-    if (is_negligible(rest, tolerance, sizes)) return fit;
+                                  fit->d0 * Eigen::VectorXd(unit.mass.diagonal()) +
+                                  fit->alpha * Eigen::VectorXd(unit.stiffness.diagonal()).cwiseAbs();
+    if (is_negligible(rest, rayleigh_tolerance, sizes)) return *fit;
   }
   return {DampingModel::Kind::general, 0, 0, is_semidefinite(s.damping, s.mass)};
 }

@@ -31,6 +31,18 @@ struct DampingModel {
   bool semidefinite = true;  // D is positive semidefinite
 };
 
+/// Frobenius norms of M, K, D in units in which no unknown outweighs others, and products of two.
+struct DampingProducts {
+  double m, k, d, mk, dm, dk;
+};
+
+/// The least-squares fit of D by d0 M + alpha K; nothing where one of the two is negative beyond rounding.
+/// Whether it fits is for others to see.
+std::optional<DampingModel> rayleigh_fit(const DampingProducts& of);
+
+/// Of entries of D beside √(size_i size_j), where Rayleigh's model is to hold.
+inline constexpr double rayleigh_tolerance = 1e-12;
+
 /// D of the matrices: none, Rayleigh if D = d0 M + alpha K fits to 1e-12 with d0, alpha >= 0, else general.
 DampingModel classify_damping(const StructuralMatrices& s);
 

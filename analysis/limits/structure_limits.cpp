@@ -15,16 +15,27 @@ StructureLimits::StructureLimits(Structure structure, const StructureLimitsOptio
       options_(options),
       k0_(std::move(k0)) {}
 
+StructureLimits::StructureLimits(const DampingModel& damping, const StructureLimitsOptions& options,
+                                 const StiffestMode& k0, std::unique_ptr<GeneralDamping> general)
+    : StructureLimits(Structure{{}, damping}, options, k0) {
+  general_ = std::move(general);
+}
+
 std::optional<int> StructureLimits::digits() const {
   if (options_.digits > 0) return options_.digits;
-  return structure_->matrices.size() < many_unknowns ? std::nullopt : std::optional(4);
+  return structure_->matrices.size() < many_unknowns ? std::nullopt : std::optional(usual_digits);
 }
 
 // h has half the relative error of k0, which is below the residual: h is wrong by less than a quarter of its
 // last digit's ten.
+double search_tolerance(int digits, double tolerance) {
+  return digits > 0 ? std::max(tolerance, 5 * std::pow(10, -digits)) : tolerance;
+}
+
 ArpackOptions StructureLimits::search(double tolerance) const {
-  if (const auto wanted = digits()) tolerance = std::max(tolerance, 5 * std::pow(10, -*wanted));
-  return {.tolerance = tolerance, .seed = options_.seed, .before_product = options_.before_product};
+  return {.tolerance = search_tolerance(digits().value_or(0), tolerance),
+          .seed = options_.seed,
+          .before_product = options_.before_product};
 }
 
 const StiffestMode& StructureLimits::k0() {

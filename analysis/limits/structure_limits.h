@@ -22,6 +22,11 @@
 
 namespace springstab {
 
+/// Digits of h of many_unknowns, where no others are wanted.
+inline constexpr int usual_digits = 4;
+/// Of k0's residual, for as many digits of h; `tolerance` where digits is 0 and for many of them.
+double search_tolerance(int digits, double tolerance);
+
 struct StructureLimitsOptions {
   double safety = 1.5;  // >= 1, on the stiffness
   /// Else no bound on k0, nothing certified, no step for every pose and no transient growth, which is
@@ -45,6 +50,11 @@ class StructureLimits {
   /// `k0` where it is known already.
   explicit StructureLimits(Structure structure, const StructureLimitsOptions& options = {},
                            std::optional<StiffestMode> k0 = std::nullopt);
+
+  /// Of a structure whose matrices are not at hand: what its damping is, and where that is general, what is
+  /// known of it.
+  StructureLimits(const DampingModel& damping, const StructureLimitsOptions& options, const StiffestMode& k0,
+                  std::unique_ptr<GeneralDamping> general);
 
   const Structure& structure() const { return *structure_; }
   /// Digits of h that the searches are for; nothing where they are for all.

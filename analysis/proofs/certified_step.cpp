@@ -27,27 +27,33 @@ struct CertifiedSteps::Restricted {
 };
 
 CertifiedSteps::CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options)
-    : s_(s), options_(options), range_(s, options) {}
+    : s_(&s), range_(std::make_shared<const NumericalRange>(s, options)), options_(options) {}
 
-DefinitenessProof& CertifiedSteps::proof() {
-  if (!proof_) proof_.emplace(s_);
-  return *proof_;
+CertifiedSteps::CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof)
+    : range_(std::move(range)), proof_(std::move(proof)) {}
+
+const DefinitenessTest& CertifiedSteps::proof() {
+  if (!proof_)
+    proof_ = [proof = std::make_shared<DefinitenessProof>(*s_)](double c, double a, double b) {
+      return proof->holds(c, a, b);
+    };
+  return proof_;
 }
 
 CertifiedSteps::Restricted& CertifiedSteps::restricted() {
-  if (!restricted_) restricted_ = std::make_shared<Restricted>(without_rigid_motions(s_), options_);
+  if (!restricted_) restricted_ = std::make_shared<Restricted>(without_rigid_motions(*s_), options_);
   return *restricted_;
 }
 
 const std::vector<ModePoint>& CertifiedSteps::outline() {
   if (!outline_.empty()) return outline_;
-  const auto stiffest = range_.farthest(0, 1, loose), most_damped = range_.farthest(1, 0, loose);
+  const auto stiffest = range_->farthest(0, 1, loose), most_damped = range_->farthest(1, 0, loose);
   if (!stiffest || !most_damped) return outline_;
   outline_ = {{stiffest->d, stiffest->k}, {most_damped->d, most_damped->k}};
   if (!(stiffest->k > 0 && most_damped->d > 0)) return outline_;
   for (const double angle : {0.125, 0.25, 0.375})
-    if (const auto p = range_.farthest(std::sin(std::numbers::pi * angle) / most_damped->d,
-                                       std::cos(std::numbers::pi * angle) / stiffest->k, loose))
+    if (const auto p = range_->farthest(std::sin(std::numbers::pi * angle) / most_damped->d,
+                                        std::cos(std::numbers::pi * angle) / stiffest->k, loose))
       outline_.push_back(*p);
   return outline_;
 }
@@ -55,7 +61,7 @@ const std::vector<ModePoint>& CertifiedSteps::outline() {
 std::optional<ExtremePoint> CertifiedSteps::farthest(const HalfPlane& edge, double h,
                                                      const Stiffening& stiffening) {
   const double a = edge.x * h, b = edge.y * h * h;
-  const NumericalRange& range = edge.bound == 0 ? restricted().range : range_;
+  const ExtremePoints& range = edge.bound == 0 ? restricted().range : *range_;
   return range.farthest(a, a * stiffening.added_damping + b * stiffening.factor, loose);
 }
 
@@ -74,7 +80,7 @@ std::optional<double> CertifiedSteps::search(const Method& method, const Stiffen
     if (!(fit.h > shortest) || fit.edges.empty() || !std::isfinite(fit.h)) return std::nullopt;
     const bool from_origin = std::any_of(fit.edges.begin(), fit.edges.end(),
                                          [](const HalfPlane& edge) { return edge.bound == 0; });
-    if (from_origin && s_.size() > SparseCholesky::unknowns_limit) return std::nullopt;
+    if (from_origin && (!s_ || s_->size() > SparseCholesky::unknowns_limit)) return std::nullopt;
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();
@@ -97,8 +103,8 @@ std::optional<double> CertifiedSteps::search(const Method& method, const Stiffen
 
 std::optional<double> CertifiedSteps::certified(const Method& method) {
   return search(method, {}, [&](const HalfPlane& edge, double h) {
-    DefinitenessProof& by = edge.bound == 0 ? restricted().proof : proof();
-    return by.holds(edge.bound, edge.x * h, edge.y * h * h);
+    const double c = edge.bound, a = edge.x * h, b = edge.y * h * h;
+    return c == 0 ? restricted().proof.holds(c, a, b) : proof()(c, a, b);
   });
 }
 

@@ -22,10 +22,13 @@ class CertifiedSteps {
   /// `s`, whose K and D are positive semidefinite, must outlive it.
   explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
   explicit CertifiedSteps(StructuralMatrices&&, const ArpackOptions& = {}) = delete;
+  /// Of a structure that only these know. Polygons with an edge through the origin, which asks for the
+  /// structure without its rigid motions, prove nothing then.
+  CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof);
 
-  const NumericalRange& range() const { return range_; }
+  const ExtremePoints& range() const { return *range_; }
   /// The proofs of the whole structure; made when first asked for.
-  DefinitenessProof& proof();
+  const DefinitenessTest& proof();
 
   /// A step proved stable; nothing where there is none in the polygons, as for explicit Euler when D is
   /// singular on motions that K resists, or where eigenvalues did not converge.
@@ -46,10 +49,10 @@ class CertifiedSteps {
   std::optional<ExtremePoint> farthest(const HalfPlane& edge, double h, const Stiffening& stiffening);
   Restricted& restricted();
 
-  const StructuralMatrices& s_;
+  const StructuralMatrices* s_ = nullptr;  // where there is more than the next two
+  std::shared_ptr<const ExtremePoints> range_;
+  DefinitenessTest proof_;
   ArpackOptions options_;
-  NumericalRange range_;
-  std::optional<DefinitenessProof> proof_;
   std::shared_ptr<Restricted> restricted_;
   std::vector<ModePoint> outline_;  // points of W, more where a polygon's edge asked for them
 };

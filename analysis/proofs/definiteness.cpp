@@ -13,11 +13,6 @@ namespace {
 
 Eigen::VectorXd row_sums(const SparseMatrix& a) { return a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()); }
 
-constexpr int particles_a_piece = 20'000;
-
-// The loss measured on nets is 0.15 / layers² to 0.4 / layers², the more where stiffnesses vary tenfold.
-int layers_for(double loss) { return std::clamp(static_cast<int>(std::ceil(std::sqrt(0.23 / loss))), 2, 64); }
-
 // The entries of `a`, one for each entry of `all`, whose pattern holds that of `a`.
 Eigen::VectorXd entries_in(const SparseMatrix& all, const SparseMatrix& a) {
   Eigen::VectorXd entries(all.nonZeros());
@@ -53,6 +48,13 @@ DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, double loss) :
   sizes_.resize(s.size());
 }
 
+DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
+                                     std::function<bool(bool)> all_of)
+    : DefinitenessProof(s) {
+  pieces_ = std::move(own);
+  all_of_ = std::move(all_of);
+}
+
 // c M - a D - b K, in one pass.
 void DefinitenessProof::form(double c, double a, double b) {
   double* const value = matrix_.valuePtr();
@@ -74,8 +76,9 @@ void DefinitenessProof::form(double c, double a, double b) {
 // What is too large to be factorized at once.
 bool DefinitenessProof::in_pieces([[maybe_unused]] const SparseMatrix& matrix) {
 #ifdef SPRINGSTAB_CHOLMOD
-  if (!pieces_) pieces_ = std::make_shared<const Pieces>(matrix, particles_a_piece, layers_for(loss_));
-  return pieces_->prove(matrix);
+  if (!pieces_)
+    pieces_ = std::make_shared<const Pieces>(matrix, Pieces::usual_particles, Pieces::layers_for(loss_));
+  return all_of(pieces_->prove(matrix));
 #else
   return false;
 #endif
@@ -96,12 +99,13 @@ bool DefinitenessProof::holds(double c, double a, double b) {
   const Eigen::VectorXd forming_error =
       8 * unit_roundoff *
       (std::abs(c) * mass_size_ + std::abs(a) * damping_size_ + std::abs(b) * stiffness_size_);
-  if (!forming_error.allFinite() || !(diagonal_.minCoeff() > 0)) return false;
+  if (!all_of(forming_error.allFinite() && diagonal_.minCoeff() > 0)) return false;
 
   // Gershgorin: 2 a_ii exceeds the row's absolute sum, whose own rounding is below n unit roundoffs of it.
   const double summing_error = 2 * unit_roundoff * static_cast<double>(matrix_.rows());
-  if ((2 * diagonal_ - sizes_ - 2 * forming_error - summing_error * diagonal_).minCoeff() > 0) return true;
-  if (!cholesky_.analyze(matrix_)) {
+  if (all_of((2 * diagonal_ - sizes_ - 2 * forming_error - summing_error * diagonal_).minCoeff() > 0))
+    return true;
+  if (all_of_ || !cholesky_.analyze(matrix_)) {
     matrix_.diagonal() -= forming_error;
     return in_pieces(matrix_);
   }

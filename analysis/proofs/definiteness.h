@@ -1,6 +1,7 @@
 // Proofs by Cholesky factorization that a matrix is positive definite in spite of rounding.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -8,6 +9,9 @@
 #include "solvers/linear/structural_matrices.h"
 
 namespace springstab {
+
+/// Whether c M - a D - b K is proved to be positive definite. No proof is no proof of the contrary.
+using DefinitenessTest = std::function<bool(double c, double a, double b)>;
 
 /// Proofs for one structure, with one symbolic factorization for all its proofs.
 class Pieces;
@@ -20,8 +24,18 @@ class DefinitenessProof {
   explicit DefinitenessProof(const StructuralMatrices& s, double loss = usual_loss);
   static constexpr double usual_loss = 2e-3;
 
-  /// Whether c M - a D - b K is proved to be positive definite. No proof is no proof of the contrary.
+  /// Of a structure whose matrices are distributed: `s` are rows and columns of it, those that `own` pieces
+  /// and their neighbours need (Pieces), and `all_of` says whether something is true of everybody, who is
+  /// asked the same in the same order. What holds() says is of the whole structure.
+  DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
+                    std::function<bool(bool)> all_of);
+
+  /// A DefinitenessTest.
   bool holds(double c, double a, double b);
+  /// The same; this object must outlive it.
+  DefinitenessTest test() {
+    return [this](double c, double a, double b) { return holds(c, a, b); };
+  }
 
   /// Whether matrices of this pattern are factorized at once. Analyzes it.
   bool factorizes();
@@ -34,6 +48,7 @@ class DefinitenessProof {
  private:
   bool in_pieces(const SparseMatrix& matrix);
   void form(double c, double a, double b);
+  bool all_of(bool mine) const { return all_of_ ? all_of_(mine) : mine; }
 
   SparseMatrix matrix_;                         // of all three's pattern: what was formed last
   Eigen::VectorXd diagonal_, sizes_;            // its diagonal and absolute row sums
@@ -43,6 +58,7 @@ class DefinitenessProof {
   double loss_;
   std::optional<bool> stiffness_is_semidefinite_;
   std::shared_ptr<const Pieces> pieces_;
+  std::function<bool(bool)> all_of_;  // of a distributed structure
 };
 
 /// Whether a symmetric matrix has no eigenvalue below zero but for rounding: of 1e-9 of the diagonal, unknown

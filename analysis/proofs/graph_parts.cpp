@@ -21,9 +21,11 @@ idx_t* pointer(const std::vector<int>& v) { return const_cast<idx_t*>(v.data());
 
 }  // namespace
 
-Graph graph_of(const Eigen::SparseMatrix<double>& a) {
+Graph graph_of(const Eigen::SparseMatrix<double>& a) { return graph_of(a, a.rows() % 3 == 0 ? 3 : 1); }
+
+Graph graph_of(const Eigen::SparseMatrix<double>& a, int together) {
   Graph graph;
-  const int together = a.rows() % 3 == 0 ? 3 : 1, nodes = static_cast<int>(a.rows()) / together;
+  const int nodes = static_cast<int>(a.rows()) / together;
   graph.unknowns_a_node = together;
   std::vector<int> seen(nodes, -1);
   for (int node = 0; node < nodes; ++node) {

@@ -1,6 +1,6 @@
 // The graph of a symmetric matrix, and METIS's answers about it: an order of elimination by nested
-// dissection, and a division into parts. Three unknowns in a row are one node where the size allows: they are
-// a particle.
+// dissection, and a division into parts. Three unknowns in a row are one node where the size allows and
+// nothing else is said: they are a particle.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -17,6 +17,7 @@ struct Graph {
 
 /// Both triangles are stored, zeros included.
 Graph graph_of(const Eigen::SparseMatrix<double>& a);
+Graph graph_of(const Eigen::SparseMatrix<double>& a, int unknowns_a_node);
 
 /// Old numbers of the unknowns, in the order of elimination; empty where memory ran out.
 std::vector<long> dissection_order(const Eigen::SparseMatrix<double>& a);

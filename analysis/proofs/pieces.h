@@ -19,9 +19,18 @@ class Pieces {
   /// `layers` of neighbours around each.
   Pieces(const SparseMatrix& pattern, int particles, int layers);
 
-  int count() const { return static_cast<int>(nodes_.size()); }
-  /// Whether `q`, of that graph, is proved to be positive definite, rounding included. Threads share the
-  /// pieces (solvers/team.h).
+  /// Some of the pieces of a larger matrix, whose others are proved elsewhere: those around the first `own`
+  /// parts, of the parts that its nodes are in. `graph` is the larger one's, of all nodes up to
+  /// 2 layers + 1 from these parts.
+  Pieces(const Graph& graph, const std::vector<int>& part, int own, int layers);
+
+  static constexpr int usual_particles = 20'000;
+  /// How many layers lose about `loss` of an eigenvalue.
+  static int layers_for(double loss);
+
+  int count() const { return own_; }
+  /// Whether `q`, of that graph, is proved to be positive definite, rounding included; of a larger matrix,
+  /// what these pieces contribute. Threads share the pieces (solvers/team.h).
   bool prove(const SparseMatrix& q) const;
 
  private:
@@ -30,11 +39,13 @@ class Pieces {
     double value;  // χ_piece of the node
   };
   double shared(int i, int j) const;  // g_ij
+  void add_piece(const Graph& graph, const std::vector<int>& inside, int layers, std::vector<char>& seen);
+  void normalize();
   Eigen::VectorXd off_pieces(const SparseMatrix& q) const;
   bool prove_piece(const SparseMatrix& q, const Eigen::VectorXd& less, int piece,
                    std::vector<int>& place) const;
 
-  int unknowns_a_node_;
+  int unknowns_a_node_, own_ = 0;
   std::vector<std::vector<int>> nodes_;       // of each piece, ascending
   std::vector<std::vector<Weight>> weights_;  // of each node, by pieces
 };

@@ -19,20 +19,28 @@ struct ExtremePoint : ModePoint {
   Eigen::VectorXd vector;  // v, mass-scaled
 };
 
-class NumericalRange {
+/// Finds points of W, by whatever means.
+class ExtremePoints {
+ public:
+  virtual ~ExtremePoints() = default;
+  /// Of its searches, at least.
+  virtual double tolerance() const = 0;
+  /// The point of W with the largest a·d + b·k, but for rounding and the tolerance; nothing when that did not
+  /// converge. It is an estimate from within: no proof that W reaches no farther. `tolerance` may loosen the
+  /// search's, and `near` is the vector of a nearby direction to start from.
+  virtual std::optional<ExtremePoint> farthest(double a, double b, double tolerance = 0,
+                                               const Eigen::VectorXd& near = {}) const = 0;
+};
+
+class NumericalRange final : public ExtremePoints {
  public:
   /// `s` must outlive it. Works densely up to 150 unknowns, else by ARPACK with these options.
   explicit NumericalRange(const StructuralMatrices& s, ArpackOptions options = {});
   explicit NumericalRange(StructuralMatrices&&, ArpackOptions = {}) = delete;
 
-  /// Of its searches, at least.
-  double tolerance() const { return options_.tolerance; }
-
-  /// The point of W with the largest a·d + b·k, but for rounding and ARPACK's tolerance; nothing when that
-  /// did not converge. It is an estimate from within: no proof that W reaches no farther. `tolerance` may
-  /// loosen ARPACK's, and `near` is the vector of a nearby direction to start from.
+  double tolerance() const override { return options_.tolerance; }
   std::optional<ExtremePoint> farthest(double a, double b, double tolerance = 0,
-                                       const Eigen::VectorXd& near = {}) const;
+                                       const Eigen::VectorXd& near = {}) const override;
 
  private:
   std::optional<ExtremePoint> search(double a, double b, double tolerance, const Eigen::VectorXd& near) const;

@@ -259,6 +259,15 @@ void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, Stif
   find_lowest(s, options, proof, mode);
 }
 
+void tighten_bound(StiffestMode& mode, double gap, const std::function<bool(double)>& proves,
+                   const std::function<BoundKind()>& kind) {
+  while (mode.value + gap < mode.upper_bound && !proves(mode.value + gap))
+    gap *= kind() == BoundKind::pieces ? 2 : 8;
+  if (!(mode.value + gap < mode.upper_bound)) return;
+  mode.upper_bound = mode.value + gap;
+  mode.bound_kind = kind();
+}
+
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options, double loss) {
   StiffestMode mode;
   std::optional<DefinitenessProof> proof;
@@ -284,12 +293,9 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   if (scale == 0) return mode;
   double gap = std::max(mode.residual, 1e-10 * scale);
   if (!proof->factorizes()) gap = std::max(gap, loss * scale);
-  while (mode.value + gap < mode.upper_bound && !proof->holds(mode.value + gap, 0, 1))
-    gap *= proof->pieces() > 0 ? 2 : 8;
-  if (mode.value + gap < mode.upper_bound) {
-    mode.upper_bound = mode.value + gap;
-    mode.bound_kind = proof->pieces() > 0 ? BoundKind::pieces : BoundKind::inertia;
-  }
+  tighten_bound(
+      mode, gap, [&](double sigma) { return proof->holds(sigma, 0, 1); },
+      [&] { return proof->pieces() > 0 ? BoundKind::pieces : BoundKind::inertia; });
   return mode;
 }
 

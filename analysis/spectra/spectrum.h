@@ -8,6 +8,7 @@
 //     const double certified = 2 / std::sqrt(k0.upper_bound);   // a step below it [s]
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -67,6 +68,11 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
 
 /// Tests definiteness, of a symmetric K that can be factorized at once: sets `indefinite` and `lowest`.
 void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, StiffestMode& mode);
+
+/// Takes the bound of a mode that was found down to value + gap, or as little more as is proved: gaps grow
+/// until `proves` that k0 is below. `kind` says by what, once that was tried.
+void tighten_bound(StiffestMode& mode, double gap, const std::function<bool(double sigma)>& proves,
+                   const std::function<BoundKind()>& kind);
 
 /// Whether a Cholesky factorization proves that every eigenvalue of K' is below sigma.
 bool is_below(const StructuralMatrices& s, double sigma);

@@ -123,20 +123,25 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-// What bad input gets: one line.
-int refuse(const char* reason) {
-  std::cerr << "springstab: " << reason << '\n';
-  return bad_input;
+// What was thrown as one line of the program's; the exit status.
+int refuse(const std::string& program, const std::string& reason, int status = bad_input) {
+  std::cerr << program << ": " << reason << '\n';
+  return status;
 }
 
 }  // namespace
 
 int run_command(int argc, const char* const* argv) {
+  return run_command("springstab", all_subcommands(), argc, argv);
+}
+
+int run_command(const std::string& program, const std::vector<Subcommand>& subcommands, int argc,
+                const char* const* argv) {
   CommonOptions common;
   const Subcommand* chosen = nullptr;
-  CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", "springstab"};
+  CLI::App app{"Stable time steps, damping and regions for mass-spring simulation.", program};
   add_common_options(app, common);
-  std::vector<Subcommand> all = all_subcommands();
+  std::vector<Subcommand> all = subcommands;
   for (const auto& more : {completion_command(app), man_command(app)}) all.push_back(more);
   for (const Subcommand& subcommand : all) {
     CLI::App* added = app.add_subcommand(subcommand.name, subcommand.title);
@@ -158,18 +163,17 @@ int run_command(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     const std::string unknown = misspelt(app);
-    return refuse(((unknown.empty() ? error.what() : unknown) + "; see springstab --help").c_str());
+    return refuse(program, (unknown.empty() ? error.what() : unknown) + "; see " + program + " --help");
   } catch (const InputError& error) {
-    return refuse(error.what());
+    return refuse(program, error.what());
   } catch (const UnknownMethod& error) {
-    return refuse(unknown_method(error).c_str());
+    return refuse(program, unknown_method(error));
   } catch (const std::invalid_argument& error) {
-    return refuse(error.what());
+    return refuse(program, error.what());
   } catch (const std::bad_alloc&) {
-    return refuse("not enough memory for this input");
+    return refuse(program, "not enough memory for this input");
   } catch (const std::exception& error) {
-    std::cerr << "springstab: internal error: " << error.what() << '\n';
-    return internal_error;
+    return refuse(program, std::string("internal error: ") + error.what(), internal_error);
   }
 }
 

@@ -17,52 +17,6 @@
 namespace springstab {
 namespace {
 
-bool ends_with(const std::string& text, const std::string& ending) {
-  return text.size() >= ending.size() &&
-         std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
-                    [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-}
-
-SceneDescription describe(const InputOptions& options) {
-  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale)))
-    throw InputError("--scale", 0,
-                     "is " + springstab::shown(*options.scale) + ", expected a positive number");
-  if (is_scene_file(options.file)) {
-    if (options.spacing || !options.material.empty() || !options.pin.empty() || !options.diagonals.empty())
-      throw InputError(options.file, 0,
-                       "--spacing, --diagonals, --material and --pin stand in the scene file itself");
-    if (options.numbers.any())
-      throw InputError(
-          options.file, 0,
-          "--area-density, --stretch, --bend and --mass-total are for grids and meshes, the scene "
-          "file has its material itself");
-    SceneDescription description = read_scene_file(options.file);
-    if (options.scale && description.scale != 1)
-      throw InputError(options.file, 0,
-                       "--scale stands beside the scene's own 'scale', expected one of them");
-    description.scale *= options.scale.value_or(1);
-    return description;
-  }
-  SceneDescription description;
-  description.scale = options.scale.value_or(1);
-  if (options.grid.empty()) {
-    if (options.spacing) throw InputError("--spacing", 0, "is for --grid only");
-    if (!options.diagonals.empty()) throw InputError("--diagonals", 0, "is for --grid only");
-    description.geometry = options.file;
-  } else {
-    Grid grid = parse_grid(options.grid, "--grid");
-    if (options.spacing) grid.spacing = *options.spacing;
-    if (!options.diagonals.empty()) grid.diagonals = parse_diagonals(options.diagonals, "--diagonals");
-    check(grid, "--grid");
-    description.geometry = grid;
-  }
-  description.material = named_material(options.material.empty() ? "default" : options.material,
-                                        is_solid(description.geometry), "--material", 0);
-  apply(options.numbers, description);
-  if (!options.pin.empty()) description.pins = parse_pins(options.pin, "--pin", 0);
-  return description;
-}
-
 template <class Geometry>
 SpringNet make(const Geometry& geometry, const SpringMaterial& material) {
   return make_net(geometry, material);
@@ -88,18 +42,6 @@ auto naming(const std::string& source, Build build) {
   } catch (const std::invalid_argument& error) {
     throw InputError(source, 0, error.what());
   }
-}
-
-// "d0,alpha": rates of damping [1/s] and times [s], not negative.
-RayleighDamping parse_rayleigh(const std::string& words) {
-  const Location at{"--rayleigh", 0};
-  const std::size_t comma = words.find(',');
-  if (comma == std::string::npos)
-    at.fail(springstab::quoted(words) + " has no comma, expected d0,alpha like 0.5,1e-4");
-  const RayleighDamping damping{at.real(words.substr(0, comma)), at.real(words.substr(comma + 1))};
-  if (damping.d0 < 0 || damping.alpha < 0)
-    at.fail(springstab::quoted(words) + " is negative, expected d0 and alpha from 0");
-  return damping;
 }
 
 // Calls visit(i, j, length) for the edges: of a net or a solid they are springs, of triangles sides.
@@ -166,20 +108,9 @@ State<Vector> start_of(const Scene& scene, const InitialDescription& initial) {
 
 }  // namespace
 
-bool is_scene_file(const std::string& path) { return ends_with(path, ".json"); }
-
 Subject::Subject(const InputOptions& options, bool any_matrices) {
-  const int given = !options.file.empty() + !options.grid.empty() + !options.stiffness.empty();
-  if (given != 1)
-    throw InputError("input", 0,
-                     std::string(given == 0 ? "nothing was given" : "more than one was given") +
-                         ", expected one of SCENE.json, a mesh, --grid NxM or --stiffness K.mtx");
+  springstab::check(options);
   if (options.stiffness.empty()) {
-    if (!options.mass.empty() || !options.damping_matrix.empty() || !options.rayleigh.empty() ||
-        !options.implicit_damping_matrix.empty() || options.sum_duplicates)
-      throw InputError("input", 0,
-                       "--mass, --damping-matrix, --implicit-damping-matrix, --rayleigh and "
-                       "--sum-duplicates go with --stiffness");
     build_scene(describe(options));
   } else {
     build_matrices(options, any_matrices);
@@ -187,20 +118,13 @@ Subject::Subject(const InputOptions& options, bool any_matrices) {
 }
 
 void Subject::build_matrices(const InputOptions& options, bool any_matrices) {
-  if (options.spacing || !options.material.empty() || !options.pin.empty() || options.scale ||
-      !options.diagonals.empty())
-    throw InputError(options.stiffness, 0,
-                     "--spacing, --diagonals, --scale, --material and --pin are for grids and meshes");
-  if (options.numbers.any())
-    throw InputError(options.stiffness, 0,
-                     "--area-density, --stretch, --bend and --mass-total are for grids and meshes");
   const Duplicates duplicates = options.sum_duplicates ? Duplicates::summed : Duplicates::refused;
   const auto read = [&](const std::string& path) {
     return path.empty() ? SparseMatrix() : read_matrix(path, duplicates);
   };
   const SparseMatrix k = read(options.stiffness), m = read(options.mass), d = read(options.damping_matrix),
                      implicit = read(options.implicit_damping_matrix);
-  const auto rayleigh = options.rayleigh.empty() ? RayleighDamping() : parse_rayleigh(options.rayleigh);
+  const RayleighDamping rayleigh = rayleigh_of(options);
   std::string files = options.stiffness;
   for (const std::string* file : {&options.mass, &options.damping_matrix, &options.implicit_damping_matrix})
     if (!file->empty()) files += ", " + *file;
@@ -256,14 +180,16 @@ void Subject::build_scene(const SceneDescription& description) {
 }
 
 template <class Cloth>
-void Subject::place(Cloth cloth, const SceneDescription& description, std::vector<int> pinned,
+void Subject::place(Cloth made, const SceneDescription& description, std::vector<int> pinned,
                     const std::string& source) {
-  if (description.total_mass) weigh(*description.total_mass, cloth.mass);
+  if (description.total_mass) weigh(*description.total_mass, made.mass);
+  const auto shared = std::make_shared<const Cloth>(std::move(made));
+  const Cloth& cloth = *shared;
   pinned_ = std::move(pinned);
   stretch_ = description.initial.stretch;
   size_ = size_of(cloth);
-  visit_elements_ = [cloth](const auto& at, const ElementVisitor& visit) {
-    visit_elements(cloth, at, visit);
+  visit_elements_ = [shared](const auto& at, const ElementVisitor& visit) {
+    visit_elements(*shared, at, visit);
   };
   if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
   if constexpr (std::is_same_v<Cloth, TriangleCloth>)
@@ -272,11 +198,21 @@ void Subject::place(Cloth cloth, const SceneDescription& description, std::vecto
       mesh_file_->texture_map = cloth.texture_map;
     }
   const RayleighDamping own{description.damping.d0, description.damping.alpha.value_or(0)};
+  const auto make_scene = [shared, own, gravity = description.gravity,
+                           stretch = stretch_](const std::vector<int>& held) {
+    auto scene = std::make_unique<Scene>(*shared, held, gravity, own);
+    std::vector<Eigen::Vector3d> places;
+    for (int i : held) places.push_back(stretch.cwiseProduct(shared->rest[i]));
+    scene->place_pinned(places);
+    return scene;
+  };
+  make_model_ = [make_scene, initial = description.initial](const std::vector<int>& held) {
+    auto scene = make_scene(held);
+    State<Vector> start = start_of(*scene, initial);
+    return Model(std::move(scene), std::move(start));
+  };
   auto scene = naming(description.pins.source.empty() ? source : description.pins.source,
-                      [&] { return std::make_unique<Scene>(cloth, pinned_, description.gravity, own); });
-  std::vector<Eigen::Vector3d> places;
-  for (int i : pinned_) places.push_back(stretch_.cwiseProduct(cloth.rest[i]));
-  scene->place_pinned(places);
+                      [&] { return make_scene(pinned_); });
   if (description.contact) add_contact(*description.contact, cloth, *scene);
   State<Vector> start = start_of(*scene, description.initial);
   Model::operator=(Model(std::move(scene), std::move(start)));

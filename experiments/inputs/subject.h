@@ -10,26 +10,11 @@
 #include "analysis/limits/penalty_contact.h"
 #include "analysis/limits/stiffest_motion.h"
 #include "analysis/model.h"
-#include "experiments/inputs/material_options.h"
+#include "experiments/inputs/input_options.h"
 #include "experiments/inputs/mesh_input.h"
-#include "experiments/inputs/scene_description.h"
 #include "solvers/contact/contact_filter.h"
 
 namespace springstab {
-
-/// INPUT as typed; empty strings were not given. Exactly one of file, grid and stiffness must be.
-struct InputOptions {
-  std::string file;               // SCENE.json or a mesh
-  std::string grid;               // "NxM"
-  std::optional<double> spacing;  // [m], with grid
-  std::string material, pin;      // with grid or a mesh
-  std::optional<double> scale;    // of a scene's geometry
-  std::string diagonals;          // with grid
-  MaterialOptions numbers{};      // with grid or a mesh
-  std::string stiffness, mass, damping_matrix, implicit_damping_matrix;
-  bool sum_duplicates = false;  // of these matrices' entries
-  std::string rayleigh;         // "d0,alpha": damping of matrices beside D
-};
 
 /// How large a scene is.
 struct SceneSize {
@@ -86,6 +71,12 @@ class Subject : public Model {
   /// The same of all particles of a scene, pinned ones too.
   std::vector<long> vertex_numbers() const;
 
+  /// Of a scene, particles that are held.
+  const std::vector<int>& pinned() const { return pinned_; }
+  /// The scene without its contact, with all these particles held where they start, the pinned ones among
+  /// them: what acts between held particles alone is left out.
+  Model holding(const std::vector<int>& held) const { return make_model_(held); }
+
   /// Of a scene whose unknowns are x; nothing for matrices. Refers to this object.
   std::optional<ElementsOf> elements(const Vector& x) const;
 
@@ -108,6 +99,7 @@ class Subject : public Model {
   std::optional<SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
   std::vector<long> kept_;  // of matrices
+  std::function<Model(const std::vector<int>& held)> make_model_;
   std::function<void(const std::vector<Eigen::Vector3d>& at, const ElementVisitor& visit)> visit_elements_;
   std::optional<SceneSize> size_;
   bool unused_diagonals_ = false;
@@ -121,8 +113,5 @@ void expect_designable(const Model& model);
 
 /// Throws InputError(option, ...) where the model has contact, which `option` takes no account of.
 void expect_no_contact(const Subject& subject, const std::string& option);
-
-/// Whether a file is a scene, by its suffix.
-bool is_scene_file(const std::string& path);
 
 }  // namespace springstab

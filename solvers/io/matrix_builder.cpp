@@ -18,7 +18,11 @@ std::string position(long long row, long long column) {
 }  // namespace
 
 MatrixBuilder::MatrixBuilder(std::string source, int rows, int columns, Symmetry symmetry)
-    : source_(std::move(source)), rows_(rows), columns_(columns), symmetry_(symmetry) {}
+    : MatrixBuilder(std::move(source), rows, columns, symmetry, {0, rows}) {}
+
+MatrixBuilder::MatrixBuilder(std::string source, int rows, int columns, Symmetry symmetry,
+                             const IndexRange& own)
+    : source_(std::move(source)), rows_(rows), columns_(columns), symmetry_(symmetry), own_(own) {}
 
 void MatrixBuilder::add(long line, long long row, long long column, double value) {
   const Location at{source_, line};
@@ -35,7 +39,8 @@ void MatrixBuilder::add(long line, long long row, long long column, double value
     std::swap(row, column);
     if (symmetry_ == Symmetry::skew_symmetric) value = -value;
   }
-  entries_.emplace_back(static_cast<int>(row - 1), static_cast<int>(column - 1), value, line);
+  if (own_.holds(row - 1) || (symmetry_ != Symmetry::general && own_.holds(column - 1)))
+    entries_.emplace_back(static_cast<int>(row - 1), static_cast<int>(column - 1), value, line);
 }
 
 /// entries_: sorted.
@@ -56,7 +61,7 @@ void MatrixBuilder::check_duplicates(Duplicates duplicates) const {
   }
 }
 
-Eigen::SparseMatrix<double> MatrixBuilder::build(Duplicates duplicates) && {
+void MatrixBuilder::sort_and_check(Duplicates duplicates) {
   const std::size_t listed = entries_.size();
   if (listed >
       std::numeric_limits<int>::max() / 2)  // Eigen counts entries with int, and mirroring doubles them
@@ -65,13 +70,31 @@ Eigen::SparseMatrix<double> MatrixBuilder::build(Duplicates duplicates) && {
   const auto before = [&order](const Entry& a, const Entry& b) { return order(a) < order(b); };
   if (!std::ranges::is_sorted(entries_, before)) std::ranges::sort(entries_, before);
   check_duplicates(duplicates);
-  if (symmetry_ != Symmetry::general) {
-    const double sign = symmetry_ == Symmetry::symmetric ? 1 : -1;
-    entries_.reserve(2 * listed);
-    for (std::size_t i = 0; i < listed; ++i)
-      if (const Entry e = entries_[i]; e.row() != e.col())
-        entries_.emplace_back(e.col(), e.row(), sign * e.value(), e.line);
-  }
+}
+
+void MatrixBuilder::mirror() {
+  if (symmetry_ == Symmetry::general) return;
+  const std::size_t listed = entries_.size();
+  const double sign = symmetry_ == Symmetry::symmetric ? 1 : -1;
+  entries_.reserve(2 * listed);
+  for (std::size_t i = 0; i < listed; ++i)
+    if (const Entry e = entries_[i]; e.row() != e.col())
+      entries_.emplace_back(e.col(), e.row(), sign * e.value(), e.line);
+}
+
+MatrixRows MatrixBuilder::build_rows(Duplicates duplicates) && {
+  sort_and_check(duplicates);
+  mirror();
+  std::erase_if(entries_, [this](const Entry& e) { return !own_.holds(e.row()); });
+  for (Entry& e : entries_) e = Entry(e.row() - static_cast<int>(own_.first), e.col(), e.value(), e.line);
+  MatrixRows rows{own_.first, rows_, columns_, {own_.last - own_.first, columns_}};
+  rows.own.setFromTriplets(entries_.begin(), entries_.end());
+  return rows;
+}
+
+Eigen::SparseMatrix<double> MatrixBuilder::build(Duplicates duplicates) && {
+  sort_and_check(duplicates);
+  mirror();
   Eigen::SparseMatrix<double> matrix(rows_, columns_);
   matrix.setFromTriplets(entries_.begin(), entries_.end());
   return matrix;

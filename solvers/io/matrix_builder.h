@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solvers/io/text_file.h"
+#include "solvers/team.h"
 
 namespace springstab {
 
@@ -16,10 +17,19 @@ enum class Symmetry { general, symmetric, skew_symmetric };
 /// What becomes of several entries at one position.
 enum class Duplicates { refused, summed };
 
+/// Rows of a matrix that is too large to be held as a whole.
+struct MatrixRows {
+  long first;                                        // of them
+  long all_rows, columns;                            // of the matrix
+  Eigen::SparseMatrix<double, Eigen::RowMajor> own;  // from row `first` on
+};
+
 /// Collects entries in any order. A symmetric or skew-symmetric matrix must be square.
 class MatrixBuilder {
  public:
   MatrixBuilder(std::string source, int rows, int columns, Symmetry symmetry);
+  /// Of these rows alone.
+  MatrixBuilder(std::string source, int rows, int columns, Symmetry symmetry, const IndexRange& own);
 
   void reserve(std::size_t entries) { entries_.reserve(entries); }
 
@@ -30,8 +40,12 @@ class MatrixBuilder {
   /// The matrix with both triangles. Throws InputError, naming both lines, for two entries at one position
   /// (or, with symmetry, at one and its mirror image) if they are refused, or if their sum is not finite.
   Eigen::SparseMatrix<double> build(Duplicates duplicates) &&;
+  /// Of the rows asked for, likewise.
+  MatrixRows build_rows(Duplicates duplicates) &&;
 
  private:
+  void sort_and_check(Duplicates duplicates);
+  void mirror();
   void check_duplicates(Duplicates duplicates) const;
 
   struct Entry : Eigen::Triplet<double> {
@@ -42,6 +56,7 @@ class MatrixBuilder {
   std::string source_;
   int rows_, columns_;
   Symmetry symmetry_;
+  IndexRange own_;
   std::vector<Entry> entries_;
 };
 

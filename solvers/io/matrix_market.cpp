@@ -111,25 +111,22 @@ void check_backed(const Kind& kind, const Size& size, std::size_t bytes_left, co
   check_rows(at, size.rows, size.columns, size.entries);
 }
 
-}  // namespace
+struct Announced {
+  Kind kind;
+  Size size;
+};
 
-bool has_matrix_market_banner(std::string_view text) {
-  LineReader lines({}, text);
-  return lowercase(first_line(lines).substr(0, banner.size())) == banner;
-}
-
-Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text,
-                                                Duplicates duplicates) {
-  LineReader lines(source, text);
+Announced parse_announced(LineReader& lines) {
   first_line(lines);
   const Kind kind = parse_banner(lines.line(), lines.at());
   Words words;
   if (!next_data(lines, words)) lines.at().fail("the file ends here, expected a size line");
   const Size size = parse_size(kind, words, lines.at());
   check_backed(kind, size, lines.bytes_left(), lines.at());
+  return {kind, size};
+}
 
-  MatrixBuilder builder(std::string(source), size.rows, size.columns, kind.symmetry);
-  if (kind.coordinate) builder.reserve(static_cast<std::size_t>(size.entries));
+void add_entries(LineReader& lines, const Kind& kind, const Size& size, MatrixBuilder& builder) {
   // An array lists column after column, each from this row down.
   const auto first_row = [&](int column) {
     return kind.symmetry == Symmetry::general     ? 1
@@ -139,6 +136,7 @@ Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::st
   int column = 1, row = first_row(column);
   const std::size_t words_per_entry = kind.coordinate ? 3 : 1;
   long long entries = 0;
+  Words words;
   for (; next_data(lines, words); ++entries) {
     const Location at = lines.at();
     if (entries == size.entries)
@@ -158,7 +156,33 @@ Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::st
   if (entries < size.entries)
     lines.at().fail("the file ends after " + std::to_string(entries) + " entries, expected " +
                     std::to_string(size.entries) + " from the size on line " + std::to_string(size.line));
+}
+
+}  // namespace
+
+bool has_matrix_market_banner(std::string_view text) {
+  LineReader lines({}, text);
+  return lowercase(first_line(lines).substr(0, banner.size())) == banner;
+}
+
+Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text,
+                                                Duplicates duplicates) {
+  LineReader lines(source, text);
+  const auto [kind, size] = parse_announced(lines);
+  MatrixBuilder builder(std::string(source), size.rows, size.columns, kind.symmetry);
+  if (kind.coordinate) builder.reserve(static_cast<std::size_t>(size.entries));
+  add_entries(lines, kind, size, builder);
   return std::move(builder).build(duplicates);
+}
+
+MatrixRows parse_matrix_market_rows(std::string_view source, std::string_view text,
+                                    const std::function<IndexRange(int rows)>& rows_of,
+                                    Duplicates duplicates) {
+  LineReader lines(source, text);
+  const auto [kind, size] = parse_announced(lines);
+  MatrixBuilder builder(std::string(source), size.rows, size.columns, kind.symmetry, rows_of(size.rows));
+  add_entries(lines, kind, size, builder);
+  return std::move(builder).build_rows(duplicates);
 }
 
 }  // namespace springstab

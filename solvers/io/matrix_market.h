@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <functional>
 #include <string_view>
 
 #include "solvers/io/matrix_builder.h"
@@ -19,5 +20,10 @@ bool has_matrix_market_banner(std::string_view text);
 /// for everything else, and before it allocates more than the text can back.
 Eigen::SparseMatrix<double> parse_matrix_market(std::string_view source, std::string_view text,
                                                 Duplicates duplicates = Duplicates::refused);
+
+/// The same of some rows: those that `rows_of` says once the number of rows is known. Nothing else is kept.
+MatrixRows parse_matrix_market_rows(std::string_view source, std::string_view text,
+                                    const std::function<IndexRange(int rows)>& rows_of,
+                                    Duplicates duplicates = Duplicates::refused);
 
 }  // namespace springstab

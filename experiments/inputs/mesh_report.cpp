@@ -69,6 +69,8 @@ Json texture_json(const MeshFile& file) {
 
 void print_mesh_notes(const Subject& subject) {
   print_unused_texture_unit(subject);
+  for (const std::string& contact_note : subject.contact_notes())
+    std::cerr << "springstab: note: " << contact_note << '\n';
   if (subject.has_unused_diagonals())
     say("note", "diagonals", "have no use here: springs lie on both diagonals of a cell");
   if (!subject.mesh_file()) return;

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace springstab {
+namespace springstab::test {
 
 using Corners = std::array<int, 3>;
 
@@ -71,4 +71,4 @@ inline std::vector<std::array<int, 2>> intersecting_triangles(std::span<const Co
   return pairs;
 }
 
-}  // namespace springstab
+}  // namespace springstab::test

@@ -1,6 +1,7 @@
 #include "experiments/command/optional_parts.h"
 
 #include "analysis/proofs/sparse_cholesky.h"
+#include "solvers/contact/box_pairs.h"
 
 namespace springstab {
 
@@ -17,7 +18,8 @@ std::vector<OptionalPart> optional_parts() {
 #endif
   return {{"CHOLMOD, METIS and OpenBLAS", "proofs of large systems", has_cholmod()},
           {"Boost.odeint", "work-precision", odeint},
-          {"SUNDIALS", "work-precision", sundials}};
+          {"SUNDIALS", "work-precision", sundials},
+          {"Embree", "self-contact and mesh obstacles", has_embree()}};
 }
 
 std::string optional_parts_text() {

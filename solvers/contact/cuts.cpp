@@ -8,16 +8,14 @@
 namespace springstab {
 namespace {
 
-using Triangle = std::array<int, 3>;
-using PlaceList = std::span<const Eigen::Vector3d>;
-
 double volume(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
               const Eigen::Vector3d& d) {
   return (b - a).cross(c - a).dot(d - a);
 }
 
 // How deep an edge of f is in g, if one passes through it.
-std::optional<double> depth_of_edges(const Triangle& f, const Triangle& g, PlaceList x) {
+std::optional<double> depth_of_edges(const std::array<int, 3>& f, const std::array<int, 3>& g,
+                                     std::span<const Eigen::Vector3d> x) {
   const Eigen::Vector3d &a = x[g[0]], &b = x[g[1]], &c = x[g[2]];
   const double twice_area = (b - a).cross(c - a).norm();
   for (int e = 0; e < 3; ++e) {
@@ -33,14 +31,15 @@ std::optional<double> depth_of_edges(const Triangle& f, const Triangle& g, Place
   return std::nullopt;
 }
 
-Eigen::AlignedBox3d box_of(const Triangle& f, PlaceList x) {
+Eigen::AlignedBox3d box_of(const std::array<int, 3>& f, std::span<const Eigen::Vector3d> x) {
   Eigen::AlignedBox3d box(x[f[0]]);
   return box.extend(x[f[1]]).extend(x[f[2]]);
 }
 
 }  // namespace
 
-std::optional<Cut> first_cut(std::span<const Triangle> first, std::span<const Triangle> second, PlaceList x) {
+std::optional<Cut> first_cut(std::span<const std::array<int, 3>> first,
+                             std::span<const std::array<int, 3>> second, std::span<const Eigen::Vector3d> x) {
   // Of the others only those are asked that begin along x where it may be.
   std::vector<std::pair<double, int>> begins;
   std::vector<Eigen::AlignedBox3d> boxes;

@@ -18,6 +18,8 @@
 #include <memory>
 #include <span>
 
+#include "solvers/contact/box_pairs.h"
+#include "solvers/contact/first_impact.h"
 #include "solvers/contact/surface.h"
 
 namespace springstab {
@@ -44,11 +46,7 @@ struct PairCounts {
   long rebuilds = 0;  // of what is kept
 };
 
-/// Whether surfaces can be paired; else the constructors throw std::runtime_error with `embree_is_missing`.
-bool has_embree();
-inline constexpr const char* embree_is_missing =
-    "self-contact and mesh obstacles need Embree (libembree-dev)";
-
+/// Needs has_embree() (box_pairs.h): the constructors throw std::runtime_error with `embree_is_missing` else.
 class SurfacePairs {
  public:
   /// Of the surface with itself.
@@ -75,8 +73,5 @@ class SurfacePairs {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
-
-/// Relative to the largest distance between any of the pair's four particles, before and after the step.
-inline constexpr double collision_tolerance = 1e-8;
 
 }  // namespace springstab

@@ -57,10 +57,10 @@ class Apart {
     const Location at{description_.source, description_.self_line};
     if (const auto cut = first_cut(surface_.triangles, surface_.triangles, places_))
       at.fail(face(cut->first) + " of the cloth cuts its " + face(cut->second) + " at the start, " +
-              shown(cut->depth) + " m deep, expected none to");
+              springstab::shown(cut->depth) + " m deep, expected none to");
     const auto near = first_near(SurfacePairs(make_surface(surface_.triangles), free_, distances()));
     if (near)
-      at.fail("the cloth is " + shown(near->gap) + " m from itself at the start, at " +
+      at.fail("the cloth is " + springstab::shown(near->gap) + " m from itself at the start, at " +
               names_.particle(near->particles[0]) + " and " + names_.particle(near->particles[3]) +
               expected());
   }
@@ -75,20 +75,20 @@ class Apart {
     for (auto& triangle : triangles)
       for (int& corner : triangle) corner += of_cloth_;
     if (const auto cut = first_cut(surface_.triangles, triangles, places_))
-      at.fail(obstacle + " cuts " + face(cut->first) + " of the cloth at the start, " + shown(cut->depth) +
-              " m deep, expected them apart");
+      at.fail(obstacle + " cuts " + face(cut->first) + " of the cloth at the start, " +
+              springstab::shown(cut->depth) + " m deep, expected them apart");
     const auto near = first_near(
         SurfacePairs(make_surface(surface_.triangles), make_surface(triangles), free_, distances()));
     if (!near) return;
     const int mine = *std::min_element(near->particles.begin(), near->particles.end());
-    at.fail(obstacle + " is " + shown(near->gap) + " m from the cloth at the start, at " +
+    at.fail(obstacle + " is " + springstab::shown(near->gap) + " m from the cloth at the start, at " +
             names_.particle(mine) + expected());
   }
 
  private:
   std::string face(int triangle) const { return "face " + std::to_string(names_.face[triangle]); }
   std::string expected() const {
-    return ", expected at least the thickness of " + shown(contact_.thickness) + " m";
+    return ", expected at least the thickness of " + springstab::shown(contact_.thickness) + " m";
   }
   PairDistances distances() const { return {contact_.thickness, contact_.thickness}; }
 

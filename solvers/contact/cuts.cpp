@@ -8,6 +8,8 @@
 namespace springstab {
 namespace {
 
+constexpr double rounding_of_cuts = 1e-12;  // relative, of places given in decimals
+
 double volume(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
               const Eigen::Vector3d& d) {
   return (b - a).cross(c - a).dot(d - a);
@@ -18,6 +20,8 @@ std::optional<double> depth_of_edges(const std::array<int, 3>& f, const std::arr
                                      std::span<const Eigen::Vector3d> x) {
   const Eigen::Vector3d &a = x[g[0]], &b = x[g[1]], &c = x[g[2]];
   const double twice_area = (b - a).cross(c - a).norm();
+  const double least = rounding_of_cuts * a.norm();
+  double depth = least;
   for (int e = 0; e < 3; ++e) {
     const int i = f[e], j = f[(e + 1) % 3];
     if (std::any_of(g.begin(), g.end(), [&](int corner) { return corner == i || corner == j; })) continue;
@@ -26,9 +30,9 @@ std::optional<double> depth_of_edges(const std::array<int, 3>& f, const std::arr
     if (!(from * to < 0)) continue;
     const double u = volume(p, q, a, b), v = volume(p, q, b, c), w = volume(p, q, c, a);
     if ((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))
-      return std::min(std::abs(from), std::abs(to)) / twice_area;
+      depth = std::max(depth, std::min(std::abs(from), std::abs(to)) / twice_area);
   }
-  return std::nullopt;
+  return depth > least ? std::optional(depth) : std::nullopt;
 }
 
 Eigen::AlignedBox3d box_of(const std::array<int, 3>& f, std::span<const Eigen::Vector3d> x) {

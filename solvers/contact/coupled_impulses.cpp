@@ -8,8 +8,8 @@
 namespace springstab {
 namespace {
 
-constexpr int most_sweeps = 200;
-constexpr double settled_sweep = 1e-8;  // relative, of velocities
+constexpr int most_sweeps = 60;
+constexpr double settled_sweep = 1e-5;  // relative, of velocities
 
 }  // namespace
 

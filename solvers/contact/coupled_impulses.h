@@ -41,7 +41,7 @@ class CoupledImpulses {
   double inverse_mass(int node) const { return inverse_mass_[node]; }
 
   /// From r = q = 0. Whether it has settled: an impulse of the last sweep changed no velocity by more than a
-  /// 1e-8th of the fastest that any contact has.
+  /// 1e-5th of the fastest that any contact has.
   bool solve(std::span<PairContact> contacts, double friction, std::span<Eigen::Vector3d> v);
   long sweeps() const { return sweeps_; }  // in all calls together
 

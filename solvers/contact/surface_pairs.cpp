@@ -168,6 +168,9 @@ struct SurfacePairs::Parts {
     if (all_inside(x0) && all_inside(x1)) return;
     ++counts.rebuilds;
     for (const int i : vertices) {
+      if (!x0[i].allFinite() || !x1[i].allFinite())
+        throw std::invalid_argument("the place of particle " + std::to_string(i) +
+                                    " is not finite, expected it so");
       if (x0.data() != x1.data()) way[i] = x1[i] - x0[i];
       center[i] = x0[i] + way[i] / 2;
       radius[i] = distances.skin / 2 + way[i].norm() / 2;

@@ -43,18 +43,20 @@ struct BoxFrame {
   }
 };
 
-struct Released {
+void must_be_well(RTCDevice device) {
+  const RTCError error = rtcGetDeviceError(device);
+  if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree failed with error " + std::to_string(error));
+}
+
+}  // namespace
+
+struct EmbreeRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
   void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
   void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
 };
 template <class Handle>
-using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Released>;
-
-void must_be_well(RTCDevice device) {
-  const RTCError error = rtcGetDeviceError(device);
-  if (error != RTC_ERROR_NONE) throw std::runtime_error("Embree failed with error " + std::to_string(error));
-}
+using EmbreeHandle = std::unique_ptr<std::remove_pointer_t<Handle>, EmbreeRelease>;
 
 /// A tree over a number of boxes. Embree keeps where it is: it does not move.
 class BoxTree {
@@ -96,15 +98,13 @@ class BoxTree {
 
   RTCDevice device_;
   std::vector<RTCBounds> bounds_;
-  Owned<RTCScene> scene_;
-  Owned<RTCGeometry> geometry_;
+  EmbreeHandle<RTCScene> scene_;
+  EmbreeHandle<RTCGeometry> geometry_;
   long finds_ = 0;
 };
 
-}  // namespace
-
 struct BoxPairs::Trees {
-  Owned<RTCDevice> device{rtcNewDevice("threads=1")};
+  EmbreeHandle<RTCDevice> device{rtcNewDevice("threads=1")};
   int first_count, second_count;
   BoxTree first;
   std::optional<BoxTree> second;

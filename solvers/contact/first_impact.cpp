@@ -6,8 +6,9 @@
 namespace springstab {
 namespace {
 
-constexpr double rounding_of_f = 1e-14;  // relative to its terms
-constexpr double nearest_advance = 0.1;  // of the distance: so close the next plane is sought
+constexpr double rounding_of_f = 1e-14;    // relative to its terms
+constexpr double rounding_of_gap = 1e-14;  // relative to the pair's extent: a plane with less proves nothing
+constexpr double nearest_advance = 0.1;    // of the distance: so close the next plane is sought
 constexpr int most_planes = 200;
 
 /// The motion seen from the first particle.
@@ -39,8 +40,9 @@ double separated_until(const PairMotion& pair, const Eigen::Vector3d& n, const F
   double nearest = HUGE_VAL;
   for (int i = 0; i < pair.first_count(); ++i)
     for (int j = pair.first_count(); j < 4; ++j) nearest = std::min(nearest, n.dot(now[i] - now[j]));
-  if (!(nearest > 0)) return t;
-  const double close = nearest_advance * nearest;
+  const double rounding = rounding_of_gap * pair.extent;
+  if (!(nearest > rounding)) return t;
+  const double close = std::max(nearest_advance * nearest, rounding);
   double until = HUGE_VAL;
   for (int i = 0; i < pair.first_count(); ++i)
     for (int j = pair.first_count(); j < 4; ++j) {

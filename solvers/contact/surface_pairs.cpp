@@ -9,21 +9,22 @@
 #include "solvers/contact/pair_list.h"
 
 namespace springstab {
+
+/// Vertices and edges for which a triangle stands, so that each is looked for once: numbers of `Parts`'
+/// lists.
+struct OwnFeatures {
+  std::array<int, 3> vertices, edges;
+  int vertex_count = 0, edge_count = 0;
+};
+
 namespace {
 
 using PlaceList = std::span<const Eigen::Vector3d>;
 
 constexpr double inside_for_certain = 1 - 1e-6;  // of a radius: rounding is far less
 
-/// Vertices and edges for which a triangle stands, so that each is looked for once: numbers of `Parts`'
-/// lists.
-struct OwnParts {
-  std::array<int, 3> vertices, edges;
-  int vertex_count = 0, edge_count = 0;
-};
-
-void append_own_parts(const Surface& surface, int vertex_offset, int edge_offset,
-                      std::vector<OwnParts>& list) {
+void append_own_features(const Surface& surface, int vertex_offset, int edge_offset,
+                         std::vector<OwnFeatures>& list) {
   std::vector<bool> vertex_has(surface.vertices.size()), edge_has(surface.edges.size());
   const auto take = [](const auto& sorted, const auto& wanted, std::vector<bool>& has) {
     const auto at = std::lower_bound(sorted.begin(), sorted.end(), wanted) - sorted.begin();
@@ -32,7 +33,7 @@ void append_own_parts(const Surface& surface, int vertex_offset, int edge_offset
     return is_free ? static_cast<int>(at) : -1;
   };
   for (const std::array<int, 3>& t : surface.triangles) {
-    OwnParts own;
+    OwnFeatures own;
     for (int k = 0; k < 3; ++k) {
       const std::array<int, 2> edge{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])};
       const int v = take(surface.vertices, t[k], vertex_has), e = take(surface.edges, edge, edge_has);
@@ -65,7 +66,7 @@ struct SurfacePairs::Parts {
   std::vector<std::array<int, 3>> faces;
   std::vector<std::array<int, 2>> edges;
   std::vector<int> vertices;
-  std::vector<OwnParts> own;  // of each face
+  std::vector<OwnFeatures> own;  // of each face
   int first_faces, free_count;
   PairDistances distances;
   std::vector<Eigen::Vector3d> center, way;  // of a particle: where it was, and its way in the step then
@@ -88,8 +89,8 @@ struct SurfacePairs::Parts {
       throw std::invalid_argument("surfaces are paired with a reach of " + std::to_string(at.reach) +
                                   " m and a skin of " + std::to_string(at.skin) +
                                   " m, expected positive ones");
-    append_own_parts(first, 0, 0, own);
-    append_own_parts(second, static_cast<int>(vertices.size()), static_cast<int>(edges.size()), own);
+    append_own_features(first, 0, 0, own);
+    append_own_features(second, static_cast<int>(vertices.size()), static_cast<int>(edges.size()), own);
     faces.insert(faces.end(), second.triangles.begin(), second.triangles.end());
     edges.insert(edges.end(), second.edges.begin(), second.edges.end());
     vertices.insert(vertices.end(), second.vertices.begin(), second.vertices.end());
@@ -167,6 +168,9 @@ struct SurfacePairs::Parts {
     if (all_inside(x0) && all_inside(x1)) return;
     ++counts.rebuilds;
     for (const int i : vertices) {
+      if (!x0[i].allFinite() || !x1[i].allFinite())
+        throw std::invalid_argument("the place of particle " + std::to_string(i) +
+                                    " is not finite, expected it so");
       if (x0.data() != x1.data()) way[i] = x1[i] - x0[i];
       center[i] = x0[i] + way[i] / 2;
       radius[i] = distances.skin / 2 + way[i].norm() / 2;

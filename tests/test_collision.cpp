@@ -443,7 +443,7 @@ BOOST_AUTO_TEST_CASE(proximities_are_all_that_is_near_and_closest, *with_embree)
     const bool reproduces = (difference - static_cast<long double>(c.gap) * n).norm() < 1e-14L;
     wrong += !(are_weights(kind, c.weights) && c.time == 0 && c.gap >= 0 && c.gap <= distance * (1 + 1e-12) &&
                std::abs(c.normal.norm() - 1) < 1e-14 && reproduces &&
-               (c.gap < 1e-9 || proved_apart(f, 1, c.gap * (1 - 1e-9L))));
+               (c.gap < 1e-9 || proved_apart(f, 1, c.gap * (1 - 1e-6L))));
   });
   BOOST_TEST(missed == 0);
   BOOST_TEST(wrong == 0);

@@ -22,6 +22,8 @@ namespace {
 using PlaceList = std::span<const Eigen::Vector3d>;
 
 constexpr double inside_for_certain = 1 - 1e-6;  // of a radius: rounding is far less
+constexpr double beyond_rounding = 1 + 1e-5;     // of a distance along a normal in single precision
+constexpr double least_apart = 1e-3;             // of the reach, by which a plane must be clear
 
 void append_own_features(const Surface& surface, int vertex_offset, int edge_offset,
                          std::vector<OwnFeatures>& list) {
@@ -60,6 +62,13 @@ FourPlaces places_of(const std::array<int, 4>& p, PlaceList x) {
   return {x[p[0]], x[p[1]], x[p[2]], x[p[3]]};
 }
 
+// The distance of the two parts' projections on n.
+double gap_along(const Eigen::Vector3d& n, PairKind kind, const std::array<int, 4>& p, PlaceList x) {
+  const Eigen::Vector3d& origin = x[p[0]];
+  const double b = n.dot(x[p[1]] - origin), c = n.dot(x[p[2]] - origin), d = n.dot(x[p[3]] - origin);
+  return kind == PairKind::vertex_face ? -std::max({b, c, d}) : std::min(0., b) - std::max(c, d);
+}
+
 }  // namespace
 
 struct SurfacePairs::Parts {
@@ -71,6 +80,8 @@ struct SurfacePairs::Parts {
   PairDistances distances;
   std::vector<Eigen::Vector3d> center, way;  // of a particle: where it was, and its way in the step then
   std::vector<double> radius;                // around the center: as long as it is there, what is kept is all
+  std::vector<Eigen::Vector3d> face_normal;  // at the centers; zero without one
+  std::vector<double> face_radius;
   std::vector<Box> of_particle, of_vertex, of_edge, of_face;
   BoxPairs boxes;
   PairList vertex_face, edge_edge;  // what is kept
@@ -103,6 +114,8 @@ struct SurfacePairs::Parts {
     of_vertex.resize(vertices.size());
     of_edge.resize(edges.size());
     of_face.resize(faces.size());
+    face_normal.resize(faces.size());
+    face_radius.resize(faces.size());
   }
 
   std::array<int, 4> particles_of(PairKind kind, int i, int j) const {
@@ -148,11 +161,26 @@ struct SurfacePairs::Parts {
                                       [&](int a, int b) { return radius[a] < radius[b]; })];
     apart += radius[*std::max_element(p.begin() + split, p.end(),
                                       [&](int a, int b) { return radius[a] < radius[b]; })];
-    if (closest_places(kind, places_of(p, center)).difference.squaredNorm() > apart * apart) return;
-    (kind == PairKind::vertex_face ? vertex_face : edge_edge).add(i, j);
+    const Eigen::Vector3d difference = closest_places(kind, places_of(p, center)).difference;
+    if (difference.squaredNorm() > apart * apart) return;
+    (kind == PairKind::vertex_face ? vertex_face : edge_edge).add(i, j, difference.stableNormalized());
+  }
+
+  // Whether a face's plane has the other face further away than what could come within reach.
+  bool plane_parts(int f, int g) const {
+    const std::array<int, 3>&a = faces[f], &b = faces[g];
+    const Eigen::Vector3d& n = face_normal[f];
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int k = 0; k < 3; ++k) {
+      const double height = n.dot(center[b[k]] - center[a[0]]);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    return std::max(low, -high) > distances.reach + face_radius[f] + face_radius[g];
   }
 
   void keep_of_faces(int f, int g) {
+    if (plane_parts(f, g) || plane_parts(g, f)) return;
     for (int k = 0; k < own[f].vertex_count; ++k) keep_if_near(PairKind::vertex_face, own[f].vertices[k], g);
     for (int k = 0; k < own[g].vertex_count; ++k) keep_if_near(PairKind::vertex_face, own[g].vertices[k], f);
     for (int k = 0; k < own[f].edge_count; ++k)
@@ -177,6 +205,12 @@ struct SurfacePairs::Parts {
       const Eigen::Array4d reach = padded(Eigen::Vector3d::Constant(radius[i] + distances.reach / 2));
       of_particle[i] = {padded(center[i]) - reach, padded(center[i]) + reach};
     }
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      const auto& f = faces[i];
+      face_radius[i] = std::max({radius[f[0]], radius[f[1]], radius[f[2]]});
+      face_normal[i] = inside_for_certain *
+                       (center[f[1]] - center[f[0]]).cross(center[f[2]] - center[f[0]]).stableNormalized();
+    }
     combine_boxes();
     vertex_face.clear();
     edge_edge.clear();
@@ -185,18 +219,21 @@ struct SurfacePairs::Parts {
     edge_edge.sort(static_cast<int>(edges.size()));
   }
 
-  // Calls look(kind, particles) for the kept pairs whose boxes meet, after those of the particles were set.
+  // Calls look(kind, particles, kept) for the kept pairs, but those that are further apart than `distance` in
+  // the direction in which they last were, before and after the step and so all the time.
   template <class Look>
-  void for_each_kept(const Look& look) {
+  void for_each_kept(PlaceList x0, PlaceList x1, double distance, const Look& look) {
     counts.tested += static_cast<long>(vertex_face.size() + edge_edge.size());
-    if (vertex_face.size() + edge_edge.size() == 0) return;
-    combine_boxes();
-    for (const auto& pair : vertex_face)
-      if (of_vertex[pair[0]].meets(of_face[pair[1]]))
-        look(PairKind::vertex_face, particles_of(PairKind::vertex_face, pair[0], pair[1]));
-    for (const auto& pair : edge_edge)
-      if (of_edge[pair[0]].meets(of_edge[pair[1]]))
-        look(PairKind::edge_edge, particles_of(PairKind::edge_edge, pair[0], pair[1]));
+    const double apart = beyond_rounding * distance + least_apart * distances.reach;
+    for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge})
+      for (KeptPair& kept : kind == PairKind::vertex_face ? vertex_face : edge_edge) {
+        const std::array<int, 4> p = particles_of(kind, kept.parts[0], kept.parts[1]);
+        const Eigen::Vector3d n = kept.normal.cast<double>();
+        if (gap_along(n, kind, p, x0) > apart &&
+            (x0.data() == x1.data() || gap_along(n, kind, p, x1) > apart))
+          continue;
+        look(kind, p, kept);
+      }
   }
 };
 
@@ -222,13 +259,12 @@ std::span<const SurfaceContact> SurfacePairs::proximities(PlaceList x, double di
                                 " m");
   p.found.clear();
   p.cover(x, x);
-  const Eigen::Array4d half = padded(Eigen::Vector3d::Constant(distance / 2));
-  for (const int i : p.vertices) p.of_particle[i] = {padded(x[i]) - half, padded(x[i]) + half};
-  p.for_each_kept([&](PairKind kind, const std::array<int, 4>& particles) {
+  p.for_each_kept(x, x, distance, [&](PairKind kind, const std::array<int, 4>& particles, KeptPair& kept) {
     const FourPlaces at = places_of(particles, x);
     const ClosestPlaces closest = closest_places(kind, at);
-    if (closest.difference.squaredNorm() > distance * distance) return;
     const Eigen::Vector3d n = direction_between(kind, at, closest);
+    kept.normal = n.cast<float>();
+    if (closest.difference.squaredNorm() > distance * distance) return;
     const Eigen::Vector3d normal = n.isZero(0) ? normal_of_touch(kind, at) : n;
     p.found.push_back({particles, closest.weights, normal, normal.dot(closest.difference), 0});
   });
@@ -239,11 +275,7 @@ std::span<const SurfaceContact> SurfacePairs::collisions(PlaceList x0, PlaceList
   Parts& p = *parts_;
   p.found.clear();
   p.cover(x0, x1);
-  for (const int i : p.vertices) {
-    const Eigen::Array4d from = padded(x0[i]), to = padded(x1[i]);
-    p.of_particle[i] = {from.min(to), from.max(to)};
-  }
-  p.for_each_kept([&](PairKind kind, const std::array<int, 4>& particles) {
+  p.for_each_kept(x0, x1, 0, [&](PairKind kind, const std::array<int, 4>& particles, KeptPair&) {
     const auto impact = first_impact(kind, places_of(particles, x0), places_of(particles, x1));
     if (!impact) return;
     p.found.push_back({particles, impact->places.weights, impact->normal,

@@ -509,6 +509,8 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_with_surfaces_in_contact_is_said_with_its_lin
                                     .string())};
       },
       (folder.path() / "ball.veg").string(), "has tetrahedra, expected a surface as an obstacle");
+  refuse("{\"thickness\": 0.01,\n\"self\": true}", 3,
+         "the cloth has no faces, expected some for contact of surfaces", "{\"grid\": [1, 5]}");
   refuse("{\"thickness\": 0.02,\n\"self\": true}", 3,
          "the cloth is 0.0176777 m from itself at the start, at particle ");
   refuse("{\"thickness\": 0.05, \"obstacles\": [\n{\"mesh\": \"box.obj\"}]}", 3,

@@ -41,6 +41,10 @@ MeshObstacle mesh_obstacle(const MeshObstacleDescription& description, std::vect
   return obstacle;
 }
 
+long line_of_surfaces(const ContactDescription& d) {
+  return d.contact.self ? d.self_line : d.meshes[0].place.line;
+}
+
 // What is found at the start, and how to say it.
 class Apart {
  public:
@@ -113,14 +117,15 @@ Contact contact_of(const ContactDescription& description, std::vector<std::strin
   for (const MeshObstacleDescription& mesh : description.meshes)
     contact.meshes.push_back(mesh_obstacle(mesh, notes));
   if (contact.has_surfaces() && !has_embree())
-    throw InputError(description.source,
-                     contact.self ? description.self_line : description.meshes[0].place.line,
-                     embree_is_missing);
+    throw InputError(description.source, line_of_surfaces(description), embree_is_missing);
   return contact;
 }
 
 void expect_surfaces_apart(const ContactDescription& description, const Contact& contact,
                            const ClothSurface& surface, const Vector& x, const SurfaceNames& names) {
+  if (surface.triangles.empty())
+    throw InputError(description.source, line_of_surfaces(description),
+                     "the cloth has no faces, expected some for contact of surfaces");
   Apart apart(description, contact, surface, x, names);
   if (contact.self) apart.expect_self();
   for (std::size_t m = 0; m < contact.meshes.size(); ++m)

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "analysis/regions/stability_region.h"
+#include "solvers/contact/surface_pairs.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "tests/command.h"
 #include "tests/places.h"
@@ -228,6 +229,7 @@ BOOST_AUTO_TEST_CASE(commands_print_what_the_pages_show) {
     std::ifstream file(page);
     for (const Shown& shown : commands(lines_of(file))) {
       const Outcome outcome = here.springstab(shown.arguments);
+      if (!has_embree() && outcome.err.find(embree_is_missing) != std::string::npos) continue;
       std::istringstream printed(outcome.err + outcome.out);
       const auto wrong = difference(shown.output, lines_of(printed));
       BOOST_TEST(!wrong, page.filename() << ": springstab " << shown.arguments << ":\n"

@@ -96,7 +96,7 @@ void ContactSearch::add_passing(const Places& x, const Places& y, double h, bool
     }
 }
 
-// Of a step through a ball the end tells nothing.
+// Of a step through a ball the end tells nothing; one along it may cut into the thickness.
 void ContactSearch::add_obstacles(const Places& x, const Places& y, double t, double h, bool lands) {
   for (std::size_t k = 0; k < contact_.obstacles.size(); ++k) {
     const Obstacle& obstacle = contact_.obstacles[k];
@@ -110,7 +110,8 @@ void ContactSearch::add_obstacles(const Places& x, const Places& y, double t, do
         continue;
       }
       const Eigen::Vector3d way = y[i] - x[i] - h * obstacle.velocity;
-      if (is_flat(obstacle) || gap > way.norm() || !path_enters(obstacle, t, x[i], way, contact_.thickness))
+      if (is_flat(obstacle) || gap > way.norm() ||
+          !path_enters(obstacle, t, x[i], way, nearest_allowed * contact_.thickness))
         continue;
       const Gap from = gap_at(obstacle, x[i], t);
       PairContact c = touch(k, i, from.normal);

@@ -1,7 +1,7 @@
 # Found by find_package(springstab [COMPONENTS solvers analysis]): defines springstab::solvers, and
 # springstab::analysis unless the components leave it out. The libraries are static, so what they link privately
-# is looked up here as well: Eigen and, where they were there, Expat and zlib for both; GSL, ARPACK and, where it
-# was there, CHOLMOD for analysis alone.
+# is looked up here as well: Eigen and, where they were there, Expat, zlib and Embree for both; GSL, ARPACK and, where
+# it was there, CHOLMOD for analysis alone.
 include(CMakeFindDependencyMacro)
 set(springstab_wanted ${springstab_FIND_COMPONENTS})
 if(NOT springstab_wanted)
@@ -15,19 +15,22 @@ endif()
 if(@SPRINGSTAB_ZLIB_IS_LINKED@)
   find_dependency(ZLIB)
 endif()
+list(PREPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
+if(@embree_is_linked@)
+  find_dependency(Embree)
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/springstab_solversTargets.cmake)
 set(springstab_solvers_FOUND TRUE)
 if(analysis IN_LIST springstab_wanted)
   find_dependency(GSL)
-  list(PREPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
   find_dependency(Arpack)
   if(@cholmod_is_linked@)
     find_dependency(Cholmod)
   endif()
-  list(POP_FRONT CMAKE_MODULE_PATH)
   include(${CMAKE_CURRENT_LIST_DIR}/springstab_analysisTargets.cmake)
   set(springstab_analysis_FOUND TRUE)
 endif()
+list(POP_FRONT CMAKE_MODULE_PATH)
 
 foreach(component IN LISTS springstab_wanted)
   if(springstab_FIND_REQUIRED_${component} AND NOT springstab_${component}_FOUND)

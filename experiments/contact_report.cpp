@@ -29,21 +29,28 @@ StructureLimits limits_in_contact(Subject& subject, const State<Vector>& start, 
 }  // namespace
 
 Json json_of(const ContactCounts& c) {
-  return {{"pairs_tested", c.pairs},
-          {"impulses", c.impulses},
-          {"lifts", c.lifts},
-          {"passes", c.passes},
-          {"unresolved", c.unresolved},
-          {"normal_work", c.normal_work},
-          {"friction_work", c.friction_work},
-          {"obstacle_work", c.obstacle_work},
-          {"largest_rise", c.largest_rise}};
+  Json json{{"pairs_tested", c.pairs},
+            {"impulses", c.impulses},
+            {"lifts", c.lifts},
+            {"passes", c.passes},
+            {"unresolved", c.unresolved},
+            {"normal_work", c.normal_work},
+            {"friction_work", c.friction_work},
+            {"obstacle_work", c.obstacle_work},
+            {"largest_rise", c.largest_rise}};
+  if (c.surfaces) {
+    json["zones"] = c.surfaces->zones;
+    json["blocked"] = c.surfaces->blocked;
+  }
+  return json;
 }
 
 ContactCounts contact_counts_of(const Json& json) {
-  return {json.at("pairs_tested"),  json.at("impulses"),      json.at("lifts"),
-          json.at("passes"),        json.at("unresolved"),    json.at("normal_work"),
-          json.at("friction_work"), json.at("obstacle_work"), json.at("largest_rise")};
+  ContactCounts counts{json.at("pairs_tested"),  json.at("impulses"),      json.at("lifts"),
+                       json.at("passes"),        json.at("unresolved"),    json.at("normal_work"),
+                       json.at("friction_work"), json.at("obstacle_work"), json.at("largest_rise")};
+  if (json.contains("zones")) counts.surfaces = {json.at("zones"), json.at("blocked")};
+  return counts;
 }
 
 void add_contact(Json& report, const ContactCounts& counts) {
@@ -57,13 +64,18 @@ std::string contact_text(const ContactCounts& c) {
                          c.impulses, c.lifts, 0 - c.normal_work);
   if (c.friction_work != 0) out += text(", friction %.4g J", 0 - c.friction_work);
   if (c.obstacle_work != 0) out += text("; moving obstacles gave %.4g J", c.obstacle_work);
-  if (c.unresolved > 0) out += text("; %ld times obstacles left a particle no room", c.unresolved);
+  if (c.unresolved > 0)
+    out += text("; %ld times ", c.unresolved) +
+           (c.surfaces ? "they did not settle" : "obstacles left a particle no room");
+  if (c.surfaces && c.surfaces->zones > 0)
+    out += text("; %ld times particles had to move as one", c.surfaces->zones);
   return out + '\n';
 }
 
 bool is_proved(const Contact& contact, const std::string& method) {
   const auto proved = [](const Obstacle& o) { return is_flat(o) && o.velocity.isZero(0); };
-  return method == "symplectic-euler" && std::holds_alternative<LandingImpulses>(contact.model) &&
+  return method == "symplectic-euler" && !contact.has_surfaces() &&
+         std::holds_alternative<LandingImpulses>(contact.model) &&
          std::all_of(contact.obstacles.begin(), contact.obstacles.end(), proved);
 }
 
@@ -78,11 +90,12 @@ ContactLimits::ContactLimits(Subject& subject, const State<Vector>& start,
 
 Json ContactLimits::json() const {
   Json json{{"model", name(contact_.model)},
-            {"obstacles", contact_.obstacles.size()},
+            {"obstacles", contact_.obstacles.size() + contact_.meshes.size()},
             {"thickness", contact_.thickness},
             {"friction", contact_.friction},
             {"proved", proved_},
             {"measured", measured_}};
+  if (contact_.self) json["self"] = true;
   if (std::holds_alternative<Penalty>(contact_.model))
     json["any_contact"] = {{"method", "symplectic-euler"}, {"h_certified", number(any_contact_)}};
   return json;

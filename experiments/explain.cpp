@@ -99,10 +99,14 @@ void add_contact_part(Json& parts, const Subject& subject, const State<Vector>& 
   const auto filter = subject.contact_filter();
   if (!filter) return;
   State<Vector> after = at;
+  const Contact& contact = *subject.contact();
+  const bool has_surfaces = contact.has_surfaces();
+  long elements = has_surfaces ? std::ssize(subject.contact_surface().first.triangles)
+                               : subject.scene()->free_particles() * std::ssize(contact.obstacles);
+  for (const MeshObstacle& mesh : contact.meshes) elements += std::ssize(mesh.triangles);
   parts.push_back(
-      part("contact, pairs of particle and obstacle",
-           subject.scene()->free_particles() * static_cast<long>(subject.contact()->obstacles.size()),
-           "impulses", seconds_each([&] {
+      part(has_surfaces ? "contact of surfaces, triangles" : "contact, pairs of particle and obstacle",
+           elements, "impulses", seconds_each([&] {
              after = at;
              filter->apply(h, h, at, after);
            }),

@@ -39,6 +39,8 @@ void print_end(const Course& course, const SimulateOptions& options) {
     std::cout << text("interrupted at t = %.6g s\n", result.time);
   } else if (course.diverged()) {
     std::cout << text("diverged at t = %.6g s\n", result.failed_at);
+  } else if (course.contact && course.contact->surfaces && course.contact->surfaces->blocked > 0) {
+    std::cout << text("stopped at t = %.6g s, obstacles left the cloth no way\n", result.time);
   } else if (result.status != StepStatus::done) {
     std::cout << text("stopped at t = %.6g s, the linear system was %s\n", result.time,
                       outcome(result.status));

@@ -40,9 +40,14 @@ StepStatus filtered_step(System& system, Stepper& stepper, StepFilter& filter, d
   before.x = state.x;
   before.v = state.v;
   const StepStatus status = stepper.step(system, h, state);
-  if (status == StepStatus::done && filter.apply(t, h, before, state) && !state.memory.empty())
-    stepper.start(system, h, state);
-  return status;
+  if (status != StepStatus::done) return status;
+  const Filtered filtered = filter.apply(t, h, before, state);
+  if (filtered == Filtered::failed) {
+    state.x = before.x;
+    state.v = before.v;
+  }
+  if (filtered != Filtered::unchanged && !state.memory.empty()) stepper.start(system, h, state);
+  return filtered == Filtered::failed ? StepStatus::not_converged : StepStatus::done;
 }
 
 }  // namespace

@@ -95,7 +95,8 @@ using StepPolicy = std::function<std::optional<StepPlan>(const SimulationResult&
 /// latest result is discarded): there it ends, or goes on, linearized anew, with what the policy plans. A
 /// failed solve leaves the state as it was before the step. Where h changes, the stepper is told. Neither
 /// non-finite nor implausible states reach the observer. A filter, unless null, has every state before the
-/// watch has it; where it changes one, what the method carries begins anew.
+/// watch has it; where it changes one, what the method carries begins anew; where it fails, the step has not
+/// converged.
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {},
                           StepFilter* filter = nullptr);

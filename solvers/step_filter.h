@@ -6,12 +6,15 @@
 
 namespace springstab {
 
+/// What a filter has done: where it failed, the step is to be taken back.
+enum class Filtered { unchanged, changed, failed };
+
 /// Changes states between steps of a run (simulation.h).
 class StepFilter {
  public:
   virtual ~StepFilter() = default;
-  /// `after` is what a step of h [s] has made of `before`, at the time t [s]. Whether it was changed.
-  virtual bool apply(double t, double h, const State<Vector>& before, State<Vector>& after) = 0;
+  /// `after` is what a step of h [s] has made of `before`, at the time t [s].
+  virtual Filtered apply(double t, double h, const State<Vector>& before, State<Vector>& after) = 0;
 };
 
 }  // namespace springstab

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "analysis/regions/stability_region.h"
+#include "solvers/contact/surface_pairs.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "tests/command.h"
 #include "tests/places.h"
@@ -243,6 +244,7 @@ BOOST_AUTO_TEST_CASE(commands_print_what_the_pages_show) {
       }
       const Outcome outcome = shown.ranks.empty() ? here.springstab(shown.arguments)
                                                   : here.springstab.shell(mpi_line(mpi_program, shown));
+      if (!has_embree() && outcome.err.find(embree_is_missing) != std::string::npos) continue;
       std::istringstream printed(outcome.err + outcome.out);
       const auto wrong = difference(shown.output, lines_of(printed));
       BOOST_TEST(!wrong, page.filename() << ": springstab " << shown.arguments << ":\n"

@@ -1,6 +1,7 @@
 #include "experiments/command/optional_parts.h"
 
 #include "analysis/proofs/sparse_cholesky.h"
+#include "solvers/contact/box_pairs.h"
 #include "solvers/io/inflate.h"
 #include "solvers/io/xml_file.h"
 
@@ -21,7 +22,8 @@ std::vector<OptionalPart> optional_parts() {
           {"Expat", "VTK's XML files", has_expat()},
           {"zlib", "compressed files", has_zlib()},
           {"Boost.odeint", "work-precision", odeint},
-          {"SUNDIALS", "work-precision", sundials}};
+          {"SUNDIALS", "work-precision", sundials},
+          {"Embree", "self-contact and mesh obstacles", has_embree()}};
 }
 
 std::string optional_parts_text() {

@@ -1,11 +1,11 @@
 #include "experiments/inputs/contact_keys.h"
 
+#include <filesystem>
+
 #include "experiments/inputs/json_reader.h"
 
 namespace springstab {
 namespace {
-
-constexpr char not_supported[] = "is not supported, expected contact of particles with planes and spheres";
 
 class ContactReader : private JsonReader {
  public:
@@ -15,47 +15,63 @@ class ContactReader : private JsonReader {
     expect_members(json, {"obstacles", "self", "thickness", "friction", "model"});
     ContactDescription d{{}, source_, json.line};
     Contact& contact = d.contact;
-    if (const JsonValue* self = find(json, "self")) expect_no_self_contact(*self);
-    const JsonValue& obstacles =
-        needed(json, "obstacles", "[{\"plane\": {\"point\": [0, 0, 0], \"normal\": [0, 1, 0]}}]");
-    if (obstacles.kind != JsonValue::Kind::array || obstacles.items.empty())
-      wrong(obstacles, "an array of obstacles, at least one");
-    for (const JsonValue& item : obstacles.items) {
-      contact.obstacles.push_back(obstacle(item));
-      d.obstacle_lines.push_back(item.line);
+    if (const JsonValue* self = find(json, "self")) {
+      contact.self = truth(*self);
+      d.self_line = self->key_line;
+    }
+    const JsonValue* given = find(json, "obstacles");
+    if (given || !contact.self) {
+      const JsonValue& obstacles =
+          given ? *given
+                : needed(json, "obstacles", "[{\"plane\": {\"point\": [0, 0, 0], \"normal\": [0, 1, 0]}}]");
+      if (obstacles.kind != JsonValue::Kind::array || obstacles.items.empty())
+        wrong(obstacles, "an array of obstacles, at least one");
+      for (int i = 0; i < static_cast<int>(obstacles.items.size()); ++i)
+        add_obstacle(obstacles.items[i], i, d);
     }
     read_number(json, "thickness", Sign::not_negative, contact.thickness);
     if (const JsonValue* thickness = find(json, "thickness")) d.thickness_line = thickness->line;
     read_number(json, "friction", Sign::not_negative, contact.friction);
     if (const JsonValue* value = find(json, "model")) contact.model = model(*value);
-    if (std::holds_alternative<Penalty>(contact.model)) expect_at_rest(obstacles);
+    if (std::holds_alternative<Penalty>(contact.model)) expect_penalties(d, given);
+    if ((contact.self || !d.meshes.empty()) && contact.thickness == 0)
+      fail(d.thickness_line > 0 ? d.thickness_line : json.line,
+           "'thickness' is zero or missing, expected a positive number of metres with 'self' or a mesh");
     return d;
   }
 
  private:
-  void expect_no_self_contact(const JsonValue& self) const {
-    if (self.kind == JsonValue::Kind::literal && self.text == "false") return;
-    if (self.kind == JsonValue::Kind::literal && self.text == "true")
-      fail(self.line, "contact of the cloth with itself ('self') " + std::string(not_supported));
-    wrong(self, "false");
+  bool truth(const JsonValue& json) const {
+    if (json.kind == JsonValue::Kind::literal && json.text == "true") return true;
+    if (json.kind == JsonValue::Kind::literal && json.text == "false") return false;
+    wrong(json, "true or false");
   }
 
-  Obstacle obstacle(const JsonValue& json) const {
+  void add_obstacle(const JsonValue& json, int number, ContactDescription& d) const {
     expect_members(json, {"plane", "sphere", "mesh", "velocity"});
-    const JsonValue *flat = find(json, "plane"), *round = find(json, "sphere");
-    if (const JsonValue* mesh = find(json, "mesh"))
-      fail(mesh->key_line, "an obstacle that is a mesh " + std::string(not_supported));
-    if (!flat == !round)
-      fail(json.line,
-           json.name + " has " + (flat ? "both" : "neither") + " 'plane' and 'sphere', expected one of them");
+    const JsonValue *flat = find(json, "plane"), *round = find(json, "sphere"), *mesh = find(json, "mesh");
+    const int shapes = (flat != nullptr) + (round != nullptr) + (mesh != nullptr);
+    if (shapes != 1)
+      fail(json.line, json.name + (shapes == 0 ? " has none of" : " has more than one of") +
+                          " 'plane', 'sphere' and 'mesh', expected one of them");
+    Eigen::Vector3d u(0, 0, 0);
+    if (const JsonValue* velocity = find(json, "velocity")) u = vector(*velocity);
+    if (mesh) {
+      if (mesh->kind != JsonValue::Kind::string || mesh->text.empty())
+        wrong(*mesh, "the path of a mesh file");
+      const auto path = std::filesystem::path(source_).parent_path() / mesh->text;
+      d.meshes.push_back({path.string(), u, {json.line, number}});
+      return;
+    }
     Obstacle obstacle;
     if (flat) {
       obstacle.shape = plane(*flat);
     } else {
       obstacle.shape = sphere(*round);
     }
-    if (const JsonValue* velocity = find(json, "velocity")) obstacle.velocity = vector(*velocity);
-    return obstacle;
+    obstacle.velocity = u;
+    d.contact.obstacles.push_back(obstacle);
+    d.places.push_back({json.line, number});
   }
 
   Plane plane(const JsonValue& json) const {
@@ -92,11 +108,13 @@ class ContactReader : private JsonReader {
     wrong(json, expected);
   }
 
-  void expect_at_rest(const JsonValue& obstacles) const {
-    for (const JsonValue& item : obstacles.items)
+  void expect_penalties(const ContactDescription& d, const JsonValue* obstacles) const {
+    const std::string expected = " with the model 'penalty', expected it with 'impulses' or 'inelastic' only";
+    if (d.contact.self) fail(d.self_line, "'self' stands" + expected);
+    if (!d.meshes.empty()) fail(d.meshes[0].place.line, "'mesh' stands" + expected);
+    for (const JsonValue& item : obstacles->items)
       if (const JsonValue* velocity = find(item, "velocity"))
-        fail(velocity->key_line,
-             "'velocity' stands with the model 'penalty', expected it with 'impulses' or 'inelastic' only");
+        fail(velocity->key_line, "'velocity' stands" + expected);
   }
 };
 

@@ -8,9 +8,9 @@
 
 namespace springstab {
 
-/// {"obstacles": [{"plane": {"point", "normal"}} or {"sphere": {"center", "radius"}}, with "velocity"],
-/// "thickness", "friction", "model": "impulses", "inelastic" or {"penalty": {"stiffness", "damping"}}}.
-/// Throws InputError(source, line, ...).
+/// {"obstacles": [{"plane": {"point", "normal"}}, {"sphere": {"center", "radius"}} or {"mesh": path}, with
+/// "velocity"], "self", "thickness", "friction", "model": "impulses", "inelastic" or {"penalty":
+/// {"stiffness", "damping"}}}. Throws InputError(source, line, ...).
 ContactDescription read_contact(const std::string& source, const JsonValue& json);
 
 }  // namespace springstab

@@ -28,6 +28,9 @@ class Notes {
   void note(const MeshFile& file, const std::string& what, long line = 0) {
     say("note", file.path, what, line);
   }
+  void add(const std::vector<std::string>& more) {
+    for (const std::string& each : more) all_.push_back("note: " + each);
+  }
   const std::vector<std::string>& all() const { return all_; }
 
  private:
@@ -83,6 +86,7 @@ Json texture_json(const MeshFile& file) {
 std::vector<std::string> mesh_notes(const Subject& subject) {
   Notes notes;
   add_unused_texture_unit(subject, notes);
+  notes.add(subject.contact_notes());
   if (subject.has_unused_diagonals())
     notes.say("note", "diagonals", "have no use here: springs lie on both diagonals of a cell");
   if (!subject.mesh_file()) return notes.all();

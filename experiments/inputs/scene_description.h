@@ -52,12 +52,26 @@ using Geometry = std::variant<Grid, std::string>;
 /// Springs, Baraff's and Witkin's triangles, or a solid of tetrahedra.
 using Material = std::variant<SpringMaterial, ClothMaterial, SolidMaterial>;
 
-/// Contact as it was written, and where, for messages.
+/// Where an obstacle was written, and the how manyth it is there.
+struct ObstaclePlace {
+  long line = 0;
+  int number = 0;
+};
+
+/// A mesh that stands in the way.
+struct MeshObstacleDescription {
+  std::string path;
+  Eigen::Vector3d velocity;  // [m/s]
+  ObstaclePlace place;
+};
+
+/// Contact as it was written, and where, for messages. Its meshes are yet to be read.
 struct ContactDescription {
   Contact contact;
   std::string source;
-  long line = 0, thickness_line = 0;
-  std::vector<long> obstacle_lines{};
+  long line = 0, thickness_line = 0, self_line = 0;
+  std::vector<ObstaclePlace> places{};  // of the contact's obstacles
+  std::vector<MeshObstacleDescription> meshes{};
 };
 
 struct SceneDescription {

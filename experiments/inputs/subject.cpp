@@ -229,7 +229,7 @@ int Subject::number_in_file(int particle) const {
 
 template <class Cloth>
 void Subject::add_contact(const ContactDescription& description, const Cloth& cloth, Scene& scene) {
-  contact_ = description.contact;
+  contact_ = contact_of(description, contact_notes_);
   visit_edges(cloth, [&](int i, int j, double length) {
     if (contact_->thickness <= length) return;
     const Location at{description.source, description.thickness_line};
@@ -243,8 +243,9 @@ void Subject::add_contact(const ContactDescription& description, const Cloth& cl
 void Subject::expect_apart(const ContactDescription& description) {
   const Vector x = initial_state().x;
   const auto fail = [&](const Intersection& found, const std::string& what, const char* expected) {
-    const Location at{description.source, description.obstacle_lines[found.obstacle]};
-    at.fail("obstacle " + std::to_string(found.obstacle) + " holds " + what + " of the cloth at the start, " +
+    const ObstaclePlace& place = description.places[found.obstacle];
+    const Location at{description.source, place.line};
+    at.fail("obstacle " + std::to_string(place.number) + " holds " + what + " of the cloth at the start, " +
             shown(found.depth) + " m deep, expected " + expected);
   };
   if (const auto found =
@@ -253,6 +254,9 @@ void Subject::expect_apart(const ContactDescription& description) {
          contact_->thickness > 0 ? "them apart by the thickness" : "them apart");
   if (const auto found = first_face_inside(contact_->obstacles, vertices(x), faces_))
     fail(*found, "face " + std::to_string(found->index), "them apart");
+  if (!contact_->has_surfaces()) return;
+  const auto [surface, names] = contact_surface();
+  expect_surfaces_apart(description, *contact_, surface, x, names);
 }
 
 void expect_no_contact(const Subject& subject, const std::string& option) {

@@ -10,6 +10,7 @@
 #include "analysis/limits/penalty_contact.h"
 #include "analysis/limits/stiffest_motion.h"
 #include "analysis/model.h"
+#include "experiments/inputs/contact_input.h"
 #include "experiments/inputs/input_options.h"
 #include "experiments/inputs/mesh_input.h"
 #include "solvers/contact/contact_filter.h"
@@ -55,6 +56,10 @@ class Subject : public Model {
 
   /// Where a scene's particles meet obstacles.
   const std::optional<Contact>& contact() const { return contact_; }
+  /// What of the cloth meets itself and meshes, and how that is named.
+  std::pair<ClothSurface, SurfaceNames> contact_surface() const;
+  /// What is to be known of obstacles.
+  const std::vector<std::string>& contact_notes() const { return contact_notes_; }
   /// What that takes between steps; null where it takes nothing.
   std::unique_ptr<ContactFilter> contact_filter() const;
   /// Of a penalty, what it adds to K and D at most.
@@ -105,6 +110,7 @@ class Subject : public Model {
   bool unused_diagonals_ = false;
   std::optional<Material> material_;
   std::optional<Contact> contact_;
+  std::vector<std::string> contact_notes_;
   Eigen::Vector3d stretch_{1, 1, 1};
 };
 

@@ -10,7 +10,32 @@
 namespace springstab {
 
 std::unique_ptr<ContactFilter> Subject::contact_filter() const {
-  return contact_ ? make_contact_filter(*contact_, scene()->free_masses()) : nullptr;
+  if (!contact_) return nullptr;
+  return make_contact_filter(*contact_, scene()->free_masses(),
+                             contact_->has_surfaces() ? contact_surface().first : ClothSurface());
+}
+
+std::pair<ClothSurface, SurfaceNames> Subject::contact_surface() const {
+  const int particles = scene()->particles(), free_count = scene()->free_particles();
+  std::vector<int> node(static_cast<std::size_t>(particles)), particle(node.size());
+  for (int i = 0, free = 0, pinned = free_count; i < particles; ++i)
+    particle[node[i] = std::ranges::binary_search(pinned_, i) ? pinned++ : free++] = i;
+  ClothSurface surface;
+  SurfaceNames names;
+  const std::vector<Eigen::Vector3d> places = scene()->positions(scene()->rest_state().x);
+  for (const int i : pinned_) surface.pinned.push_back(places[i]);
+  for (int f = 0; f < std::ssize(faces_); ++f)
+    for (std::size_t c = 2; c < faces_[f].size(); ++c) {
+      std::array<int, 3> triangle{faces_[f][0], faces_[f][c - 1], faces_[f][c]};
+      for (int& corner : triangle) corner = node[mesh_file_ ? mesh_file_->repair.vertex[corner] : corner];
+      if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
+      surface.triangles.push_back(triangle);
+      names.face.push_back(f);
+    }
+  names.particle = [this, particle](int i) {
+    return (mesh_file_ ? "vertex " : "particle ") + std::to_string(number_in_file(particle[i]));
+  };
+  return {surface, names};
 }
 
 std::vector<Eigen::Vector3d> Subject::vertices(const Vector& x) const {

@@ -37,8 +37,12 @@ Json contents_of(const std::string& file, bool resume) {
   }
   contents["hash"] = hash_of(bytes_of(file));
   if (!is_scene_file(file)) return contents;
-  const Geometry geometry = read_scene_file(file).geometry;
-  if (const auto* mesh = std::get_if<std::string>(&geometry)) contents["mesh"] = contents_of(*mesh, resume);
+  const SceneDescription scene = read_scene_file(file);
+  if (const auto* mesh = std::get_if<std::string>(&scene.geometry))
+    contents["mesh"] = contents_of(*mesh, resume);
+  if (scene.contact)
+    for (const MeshObstacleDescription& mesh : scene.contact->meshes)
+      contents["obstacles"].push_back(contents_of(mesh.path, resume));
   return contents;
 }
 

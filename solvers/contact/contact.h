@@ -1,6 +1,8 @@
-// Contact of a scene's particles with obstacles, as the user describes it.
+// Contact of a scene's particles with obstacles, and of its surface with itself and with meshes, as the user
+// describes it.
 #pragma once
 
+#include <array>
 #include <variant>
 #include <vector>
 
@@ -19,11 +21,29 @@ struct Penalty {
 };
 using ContactModel = std::variant<LandingImpulses, InelasticImpulses, Penalty>;
 
+/// A surface, to be met from either side; it moves like an obstacle.
+struct MeshObstacle {
+  std::vector<Eigen::Vector3d> vertices;  // at t = 0 [m]
+  std::vector<std::array<int, 3>> triangles;
+  Eigen::Vector3d velocity{0, 0, 0};  // u [m/s]
+};
+
 struct Contact {
   std::vector<Obstacle> obstacles;
   double thickness = 0;  // of the cloth: the least distance [m]
   double friction = 0;   // Coulomb's μ
   ContactModel model;
+  std::vector<MeshObstacle> meshes{};
+  bool self = false;  // the cloth's surface meets itself
+
+  /// Whether surfaces meet, which takes a positive thickness and the cloth's surface.
+  bool has_surfaces() const { return self || !meshes.empty(); }
+};
+
+/// What of a cloth meets itself and meshes.
+struct ClothSurface {
+  std::vector<std::array<int, 3>> triangles;  // of particles: free ones as in the state, then pinned ones
+  std::vector<Eigen::Vector3d> pinned;        // where they are [m]
 };
 
 }  // namespace springstab

@@ -28,7 +28,7 @@ Impulses::Impulses(const Contact& contact, std::vector<double> mass)
   for (const Obstacle& obstacle : contact_.obstacles) reach_ = std::max(reach_, extent_of(obstacle));
 }
 
-bool Impulses::apply(double t, double h, const State<Vector>& before, State<Vector>& after) {
+Filtered Impulses::apply(double t, double h, const State<Vector>& before, State<Vector>& after) {
   bool changed = false;
   double rise = 0;
   for (std::size_t i = 0; i < mass_.size(); ++i) {
@@ -49,7 +49,7 @@ bool Impulses::apply(double t, double h, const State<Vector>& before, State<Vect
     after.v.segment<3>(at) = p.v;
   }
   counts_.largest_rise = std::max(counts_.largest_rise, rise);
-  return changed;
+  return changed ? Filtered::changed : Filtered::unchanged;
 }
 
 Gap Impulses::gap(std::size_t obstacle, const Eigen::Vector3d& x, double t) const {

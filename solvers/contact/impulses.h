@@ -29,7 +29,7 @@ class Impulses final : public ContactFilter {
   /// model is a penalty.
   Impulses(const Contact& contact, std::vector<double> mass);
 
-  bool apply(double t, double h, const State<Vector>& before, State<Vector>& after) override;
+  Filtered apply(double t, double h, const State<Vector>& before, State<Vector>& after) override;
 
  private:
   /// A particle's step, as it is and as it was.

@@ -88,7 +88,7 @@ TermMaker penalty_terms(const Contact& contact) {
 PenaltyFriction::PenaltyFriction(const Contact& contact, std::vector<double> mass)
     : contact_(contact), stiffness_(penalty_of(contact).stiffness), mass_(std::move(mass)) {}
 
-bool PenaltyFriction::apply(double, double h, const State<Vector>& before, State<Vector>& after) {
+Filtered PenaltyFriction::apply(double, double h, const State<Vector>& before, State<Vector>& after) {
   bool changed = false;
   for (std::size_t i = 0; i < mass_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(3 * i);
@@ -105,7 +105,7 @@ bool PenaltyFriction::apply(double, double h, const State<Vector>& before, State
     });
     after.v.segment<3>(at) = v;
   }
-  return changed;
+  return changed ? Filtered::changed : Filtered::unchanged;
 }
 
 }  // namespace springstab

@@ -17,7 +17,7 @@ TermMaker penalty_terms(const Contact& contact);
 class PenaltyFriction final : public ContactFilter {
  public:
   PenaltyFriction(const Contact& contact, std::vector<double> mass);
-  bool apply(double t, double h, const State<Vector>& before, State<Vector>& after) override;
+  Filtered apply(double t, double h, const State<Vector>& before, State<Vector>& after) override;
 
  private:
   Contact contact_;

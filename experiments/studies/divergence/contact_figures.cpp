@@ -42,18 +42,18 @@ class ContactDice {
 
 // Of random masses and springs; at rest.
 SpringNet random_structure(const std::string& kind, ContactDice& dice) {
-  if (kind == "cloth") return make_net(Grid{6, 6, 0.025}, SpringMaterial{.particle_mass = 1.25e-4});
+  if (kind == "cloth") return make_net(Grid{4, 4, 0.025}, SpringMaterial{.particle_mass = 1.25e-4});
   SpringNet net;
-  const int n = kind == "chain" ? 12 : static_cast<int>(dice.uniform(4, 10));
+  const int n = kind == "chain" ? 8 : static_cast<int>(dice.uniform(4, 10));
   for (int i = 0; i < n; ++i) {
     net.rest.push_back(kind == "chain" ? Eigen::Vector3d(0.1 * i, 0, 0) : Eigen::Vector3d(dice.direction()));
-    net.mass.push_back(std::pow(10, dice.uniform(-1, 1)));
+    net.mass.push_back(std::pow(10, dice.uniform(-2, 1)));
   }
   for (int j = 1; j < n; ++j)
     for (int i = 0; i < j; ++i)
       if (kind == "chain" ? i + 1 == j : i + 1 == j || dice.uniform(0, 1) < 0.4)
         net.springs.push_back(
-            {i, j, std::pow(10, dice.uniform(1, 3)), 0, (net.rest[i] - net.rest[j]).norm()});
+            {i, j, std::pow(10, dice.uniform(0, 4)), 0, (net.rest[i] - net.rest[j]).norm()});
   return net;
 }
 
@@ -100,7 +100,8 @@ bool contact_run_diverges(Scene& scene, const Method& method, double h, long ste
   for (double& v : state.v) v = dice.uniform(-1, 1);
   const State<Vector> before = state;
   filter->apply(0, h, before, state);  // the first step, too, enters nothing
-  const EnergyWatch watch{.initial_energy = linear.kinetic_energy(before.v)};
+  // At 0.99 of the limit energy alone lets T be some 50 times what it was.
+  const EnergyWatch watch{.initial_energy = linear.kinetic_energy(before.v), .slack = std::sqrt(1e3)};
   return simulate(linear, *method.stepper(), {h, steps}, watch, state, {}, {}, filter.get()).status !=
          StepStatus::done;
 }
@@ -121,7 +122,7 @@ std::vector<bool> diverged_of(const std::string& kind, const Method& method, lon
 
 Json draw_contact(const FigureFiles& files, const CommonOptions& common, const FiguresOptions& options) {
   const int runs = options.quick ? 4 : 24;
-  const long steps = options.quick ? 300 : 2500;
+  const long steps = options.quick ? 300 : 2000;
   const std::vector<ContactCase> cases = contact_cases();
   constexpr long method_count = std::size(contact_methods), kinds = std::size(contact_structures);
   std::vector<std::vector<bool>> diverged(kinds * method_count * runs);

@@ -15,8 +15,8 @@ namespace {
 
 std::vector<Figure> all_figures() {
   std::vector<Figure> all = region_figures();
-  for (const auto& more :
-       {drape_figures(), timing_figures(), divergence_figures(), precision_figures(), stress_figures()})
+  for (const auto& more : {drape_figures(), timing_figures(), divergence_figures(), contact_figures(),
+                           precision_figures(), stress_figures()})
     all.insert(all.end(), more.begin(), more.end());
   return all;
 }

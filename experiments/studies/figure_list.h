@@ -32,6 +32,7 @@ Figure region_figure(const std::string& method);
 std::vector<Figure> drape_figures();   // the paper's Fig. 4, frames over time, k0 over time
 std::vector<Figure> timing_figures();  // its Figs. 5 to 7
 std::vector<Figure> divergence_figures();
+std::vector<Figure> contact_figures();    // divergence in contact, and by penalties
 std::vector<Figure> precision_figures();  // error against run time, long runs
 std::vector<Figure> stress_figures();
 

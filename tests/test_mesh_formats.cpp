@@ -39,7 +39,8 @@ using Places = std::vector<Eigen::Vector3d>;
 
 /// What the other programs were given: a surface of a quadrangle and a triangle, and two tetrahedra.
 const Places surface{{0, 0, 0}, {1, 0, 0.1}, {1.1, 1, 0}, {0, 0.9, -0.05}, {2, 0.25, 0.3}};
-const TestFaces polygons{{0, 1, 2, 3}, {1, 4, 2}}, triangles{{0, 1, 2}, {0, 2, 3}, {1, 4, 2}},
+const TestFaces polygons{{0, 1, 2, 3}, {1, 4, 2}}, gmsh_polygons{{1, 4, 2}, {0, 1, 2, 3}},
+    triangles{{0, 1, 2}, {0, 2, 3}, {1, 4, 2}},
     vtk_triangles{{2, 3, 1}, {0, 1, 3}, {1, 4, 2}};  // its filter divides along the other diagonal
 const Places solid{{0, 0, 0}, {1, 0, 0.1}, {0, 1.1, 0}, {0, 0, 0.7}, {1, 1.5, 1}};
 const std::vector<std::array<int, 4>> two_tets{{0, 1, 2, 3}, {1, 2, 3, 4}};
@@ -140,9 +141,12 @@ BOOST_AUTO_TEST_CASE(files_of_other_programs_read_back_equal) {
       {"ply/meshio_binary.ply", surface, polygons},
       {"ply/vtk_big.ply", single, polygons},
       {"ply/blender_like.ply", single, polygons},
+      {"ply/blender_binary.ply", single, polygons},
+      {"ply/blender_ascii.ply", surface, polygons},
+      {"stl/blender.stl", single, triangles},
       {"off/meshio.off", surface, triangles},
-      {"gmsh/gmsh_surface_22.msh", surface, polygons},
-      {"gmsh/gmsh_surface_41.msh", surface, polygons},
+      {"gmsh/gmsh_surface_22.msh", surface, gmsh_polygons},
+      {"gmsh/gmsh_surface_41.msh", surface, gmsh_polygons},
       {"vtk/meshio_42.vtk", surface, polygons},
       {"vtk/vtk_poly_42.vtk", surface, polygons},
       {"vtk/vtk_poly_51.vtk", surface, polygons},
@@ -251,13 +255,15 @@ BOOST_AUTO_TEST_CASE(texture_coordinates_of_a_ply_file_are_those_of_its_corners)
   const std::vector<Eigen::Vector2d> uv{{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}, {0.5, 0}, {1, 0.25}, {0.5, 1}};
   BOOST_TEST((mesh.corner_uv == uv));
   BOOST_TEST(parse_ply("a file", replaced(text, "float t\n", "float w\n")).corner_uv.empty());
-  const std::string nan = replaced(text, bytes(0.25f), bytes(std::numeric_limits<float>::quiet_NaN()));
-  const Mesh unusable =
-      parse_ply("a file", replaced(nan, bytes(0.25f), bytes(std::numeric_limits<float>::infinity())));
-  BOOST_TEST(unusable.corner_uv.empty());
-  BOOST_REQUIRE_EQUAL(unusable.notes.size(), 1u);
-  BOOST_TEST(unusable.notes[0].line < 0);
-  BOOST_TEST(unusable.notes[0].text.starts_with("texture coordinates are no numbers"));
+  for (const float wrong :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    const Mesh unusable =
+        parse_ply("a file", std::string(text).replace(text.rfind(bytes(0.25F)), 4, bytes(wrong)));
+    BOOST_TEST(unusable.corner_uv.empty());
+    BOOST_REQUIRE_EQUAL(unusable.notes.size(), 1u);
+    BOOST_TEST(unusable.notes[0].line < 0);
+    BOOST_TEST(unusable.notes[0].text.starts_with("texture coordinates are no numbers"));
+  }
 }
 
 BOOST_AUTO_TEST_CASE(a_malformed_ply_file_is_refused_with_its_line_or_its_byte) {

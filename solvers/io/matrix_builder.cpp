@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -66,7 +67,7 @@ void MatrixBuilder::sort_and_check(Duplicates duplicates) {
   if (listed >
       std::numeric_limits<int>::max() / 2)  // Eigen counts entries with int, and mirroring doubles them
     Location{source_}.fail("the matrix has " + std::to_string(listed) + " entries, expected fewer than 2^30");
-  const auto order = [](const Entry& e) { return std::tuple(e.col(), e.row(), e.line); };
+  const auto order = [](const Entry& e) { return std::tuple(e.col(), e.row(), std::abs(e.line)); };
   const auto before = [&order](const Entry& a, const Entry& b) { return order(a) < order(b); };
   if (!std::ranges::is_sorted(entries_, before)) std::ranges::sort(entries_, before);
   check_duplicates(duplicates);

@@ -114,11 +114,19 @@ struct Surfaces : test::ScratchFolder {
     return all;
   }
 
-  /// Of the cloth with itself and with meshes.
+  /// Of the cloth with itself and with meshes, but for triangles that a floor has put in one plane.
   long intersections(double t, const Vector& x) const {
     long count = 0;
-    for (const auto& pair : intersecting_triangles(triangles, places(t, x))) count += pair[0] < of_cloth;
+    const std::vector<Vector3d> all = places(t, x);
+    for (const auto& [f, g] : intersecting_triangles(triangles, all))
+      count += f < of_cloth && !are_in_one_plane(triangles[f], triangles[g], all);
     return count;
+  }
+
+  /// To 1e-9 m, of a thickness of 4e-3 m.
+  static bool are_in_one_plane(const Corners& f, const Corners& g, const std::vector<Vector3d>& all) {
+    const Vector3d n = (all[f[1]] - all[f[0]]).cross(all[f[2]] - all[f[0]]).normalized();
+    return std::all_of(g.begin(), g.end(), [&](int i) { return std::abs(n.dot(all[i] - all[f[0]])) < 1e-9; });
   }
 
   double energy(const State<Vector>& s) {
@@ -282,7 +290,7 @@ BOOST_AUTO_TEST_CASE(triangles_that_cut_each_other_are_found) {
 BOOST_AUTO_TEST_CASE(no_step_of_any_method_ends_in_an_intersection, *boost::unit_test::label("slow")) {
   if (without_embree()) return;
   const double h = 8e-5;
-  const std::pair<std::string, long> scenes[] = {{over_a_box(), 4000}, {folding(), 4000}};
+  const std::pair<std::string, long> scenes[] = {{over_a_box(), 2500}, {folding(), 2500}};
   for (const Method& method : built_in_methods())
     for (const auto& [text, steps] : scenes) BOOST_TEST_CONTEXT(method.name() << text.substr(14, 40)) {
         Surfaces scene(text);
@@ -290,7 +298,7 @@ BOOST_AUTO_TEST_CASE(no_step_of_any_method_ends_in_an_intersection, *boost::unit
         const double weight = 9.81 * scene.subject.scene()->total_free_mass();
         BOOST_TEST((done.result.status == StepStatus::done));
         BOOST_TEST(done.intersections == 0);
-        BOOST_TEST(done.counts.impulses > 3000);
+        BOOST_TEST(done.counts.impulses > 1000);
         BOOST_TEST(done.counts.friction_work < 0);
         BOOST_TEST(done.largest_gain < 2 * h * weight);
         BOOST_TEST_MESSAGE(method.name()

@@ -659,7 +659,7 @@ BOOST_AUTO_TEST_CASE(bad_input_is_one_line_and_status_2_and_leaves_nothing) {
       {simulate + "--step 0", "--step"},
       {simulate + "--step nan", "--step"},
       {simulate + "--frames 0", "--frames"},
-      {simulate + "--format ply", "ply"},
+      {simulate + "--format dae", "dae"},
       {simulate + "--damping some", "some"},
       {"simulate --stiffness one.mtx --method rk4 --duration 1 --damping designed", "designed"},
       {"simulate cloth.obj --method rk4 --duration -1", "--duration"},
@@ -727,7 +727,7 @@ BOOST_AUTO_TEST_CASE(a_solid_of_tetrahedra_is_a_scene_like_any_other) {
       {"limits 'solid of cloth.json'", "expected 'springs' or 'baraff-witkin'"},
       {"limits solid.veg --material baraff-witkin", "--material"},
       {"limits solid.veg --pin 6", "does not exist"},
-      {"limits solid.ply", "solid.ply: is of no known kind, expected a suffix: .json"},
+      {"limits solid.dae", "solid.dae: is of no known kind, expected a suffix: .json"},
   };
   for (const auto& [arguments, word] : refused) {
     const Outcome run = (*this)(arguments);

@@ -1,4 +1,4 @@
-// Frames as one animation in glTF 2.0, for browsers and Blender: the first frame is the mesh, every other one
+// Frames as one animation in glTF 2.0: the first frame is the mesh, every other one
 // a morph target, the differences from it, and the weight of each goes to 1 at its time and back to 0.
 #pragma once
 

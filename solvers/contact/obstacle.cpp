@@ -1,8 +1,8 @@
 #include "solvers/contact/obstacle.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
+
+#include "solvers/contact/closest_places.h"
 
 namespace springstab {
 namespace {
@@ -30,19 +30,6 @@ Eigen::Vector3d nearest_on_segment(const Eigen::Vector3d& x, const Eigen::Vector
   return square > 0 ? x + std::clamp(w.dot(c - x) / square, 0., 1.) * w : x;
 }
 
-// The place of a triangle that is nearest to c.
-Eigen::Vector3d nearest_on_triangle(const std::array<Eigen::Vector3d, 3>& p, const Eigen::Vector3d& c) {
-  const Eigen::Vector3d n = (p[1] - p[0]).cross(p[2] - p[0]);
-  bool inside = n.squaredNorm() > 0;
-  Eigen::Vector3d nearest = p[0];
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector3d side = p[(i + 1) % 3] - p[i], at = nearest_on_segment(p[i], side, c);
-    inside = inside && n.dot(side.cross(c - p[i])) >= 0;
-    if ((at - c).squaredNorm() < (nearest - c).squaredNorm()) nearest = at;
-  }
-  return inside ? c - n.dot(c - p[0]) / n.squaredNorm() * n : nearest;
-}
-
 // How deep the innermost place of a face is, of a polygon as a fan of triangles. (In a half-space that is a
 // corner.)
 double depth_of(const Plane& plane, std::span<const Eigen::Vector3d> places, const std::vector<int>& face) {
@@ -54,8 +41,9 @@ double depth_of(const Plane& plane, std::span<const Eigen::Vector3d> places, con
 double depth_of(const Sphere& sphere, std::span<const Eigen::Vector3d> places, const std::vector<int>& face) {
   double depth = -gap_of(sphere, places[face[0]]).gap;
   for (std::size_t c = 2; c < face.size(); ++c) {
-    const std::array<Eigen::Vector3d, 3> triangle{places[face[0]], places[face[c - 1]], places[face[c]]};
-    depth = std::max(depth, -gap_of(sphere, nearest_on_triangle(triangle, sphere.center)).gap);
+    const FourPlaces center_and_face{sphere.center, places[face[0]], places[face[c - 1]], places[face[c]]};
+    const ClosestPlaces closest = closest_places(PairKind::vertex_face, center_and_face);
+    depth = std::max(depth, sphere.radius - closest.difference.norm());
   }
   return depth;
 }

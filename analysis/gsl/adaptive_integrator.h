@@ -31,7 +31,8 @@ struct AdaptiveResult {
 };
 
 /// Integrates x'' = acceleration(x, v) from `start` at time 0 to the ascending `times` [s]. The two for stiff
-/// problems hold dense matrices of 2n rows, and take their Jacobians by differences: 2n force evaluations each.
+/// problems hold dense matrices of 2n rows, and take their Jacobians by differences: 2n force evaluations
+/// each.
 AdaptiveResult integrate_adaptively(System& system, const State<Vector>& start,
                                     const std::vector<double>& times, const AdaptiveOptions& options);
 

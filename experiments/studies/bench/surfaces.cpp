@@ -46,7 +46,7 @@ void detect(benchmark::State& state, bool folded) {
   double seconds = 0;
   long steps = 0, near = 0;
   for (auto _ : state) {
-    place(next, n, folded, ++steps * step);
+    place(next, n, folded, static_cast<double>(++steps) * step);
     const double start = thread_seconds();
     near += static_cast<long>(pairs.proximities(now, reach).size());
     benchmark::DoNotOptimize(pairs.collisions(now, next).data());

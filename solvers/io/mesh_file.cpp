@@ -17,11 +17,13 @@
 namespace springstab {
 namespace {
 
+enum class Holds { surface, solid, either };
+
 struct MeshFormat {
   std::string_view suffix;
   AnyMesh (*parse)(const std::string& source, std::string_view text);
   bool (*is_binary)(std::string_view beginning);
-  enum { surface, solid, either } holds;
+  Holds holds;
 };
 
 template <auto parse_it>
@@ -32,7 +34,7 @@ AnyMesh parse_any(const std::string& source, std::string_view text) {
 bool is_text(std::string_view) { return false; }
 
 const MeshFormat* mesh_format(const std::string& path) {
-  using enum decltype(MeshFormat::holds);
+  using enum Holds;
   static constexpr MeshFormat formats[] = {{"", parse_any<parse_obj>, is_text, surface},
                                            {".obj", parse_any<parse_obj>, is_text, surface},
                                            {".off", parse_any<parse_off>, is_text, surface},
@@ -62,7 +64,7 @@ AnyMesh read_mesh(const std::string& path) {
 
 bool holds_tetrahedra(const std::string& path) {
   const MeshFormat* const format = mesh_format(path);
-  if (!format || format->holds != MeshFormat::either) return format && format->holds == MeshFormat::solid;
+  if (!format || format->holds != Holds::either) return format && format->holds == Holds::solid;
   if (!std::filesystem::is_regular_file(path)) return true;  // a pipe can be read but once
   try {
     return std::holds_alternative<TetMesh>(read_mesh(path));

@@ -45,7 +45,8 @@ std::string in_words(const std::exception& error) { return std::string("Left out
 
 Told<ModeShape> mode_shape(LimitsAnswer& answer, const Method& method, double h) {
   const StiffestMode& k0 = answer.limits().k0();
-  const auto& [s, damping, every_pose] = answer.limits().structure();
+  const StructuralMatrices& s = answer.limits().structure().matrices;
+  const DampingModel& damping = answer.limits().structure().damping;
   if (!(k0.value > 0)) return {{}, nothing_stiff};
   if (!s.symmetric)
     return {{}, "Left out: K or D is not symmetric, and its modes are no points of this plane."};

@@ -49,6 +49,7 @@ Eigen::SparseMatrix<double> parse_petsc(const std::string& source, std::string_v
   }
   if (sum != entries)
     at.fail("the rows have " + std::to_string(sum) + " entries, expected " + std::to_string(entries));
+  reader.expect_room(entries, size + 8, "entries");
   BinaryReader values(source, bytes, std::endian::big,
                       reader.position() + static_cast<std::size_t>(entries) * size);
   MatrixBuilder builder(source, static_cast<int>(rows), static_cast<int>(columns), Symmetry::general);

@@ -79,6 +79,21 @@ ClosestPlaces closest_of_edges(const FourPlaces& x) {
   return closer.best;
 }
 
+// The difference of a vertex and a place within an edge has none along the edge. What rounding gives it there
+// is much, at the ends of the edge, where the two are close.
+Eigen::Vector3d across_edge(const FourPlaces& x, const ClosestPlaces& closest) {
+  std::array<int, 2> ends{};
+  int within = 0;
+  for (int i = 0; i < 4; ++i)
+    if (const double w = std::abs(closest.weights[i]); w > 0 && w < 1) {
+      if (within == 2) return closest.difference;
+      ends[within++] = i;
+    }
+  if (within < 2) return closest.difference;
+  const Eigen::Vector3d along = (x[ends[1]] - x[ends[0]]).normalized();
+  return closest.difference - along.dot(closest.difference) * along;
+}
+
 }  // namespace
 
 ClosestPlaces closest_places(PairKind kind, const FourPlaces& x) {
@@ -92,7 +107,7 @@ Eigen::Vector3d direction_between(PairKind kind, const FourPlaces& x, const Clos
   const bool inside = w[1] != 0 && w[2] != 0 && w[3] != 0 && (kind == PairKind::vertex_face || w[0] != 0);
   if (inside && is_well_conditioned(p, n.squaredNorm()) && n.dot(p.d) != 0)
     return std::copysign(1 / n.norm(), n.dot(p.d)) * n;
-  return closest.difference.stableNormalized();
+  return across_edge(x, closest).stableNormalized();
 }
 
 Eigen::Vector3d normal_of_touch(PairKind kind, const FourPlaces& x) {

@@ -31,8 +31,8 @@ inline PairDirections pair_directions(PairKind kind, const FourPlaces& x) {
   return {x[1] - x[0], x[3] - x[2], x[0] - x[2]};
 }
 
-/// A unit vector along the difference; N where both places are inside, which is exact however close they are.
-/// Zero where neither says anything.
+/// A unit vector along the difference; N where both places are inside, which is exact however close they are,
+/// and across the edge where one is a vertex and the other within an edge. Zero where neither says anything.
 Eigen::Vector3d direction_between(PairKind kind, const FourPlaces& x, const ClosestPlaces& closest);
 /// A unit vector along N, on either side, or any where there is none: for places without a difference.
 Eigen::Vector3d normal_of_touch(PairKind kind, const FourPlaces& x);

@@ -66,7 +66,11 @@ std::optional<Meeting> first_within(const PairMotion& pair, double t, double end
     const FourPlaces x = pair.at(t);
     const ClosestPlaces places = closest_places(pair.kind, x);
     if (k == planes || places.difference.norm() <= tolerance) return Meeting{t, x, places};
-    const double until = separated_until(pair, direction_between(pair.kind, x, places), x, t, end);
+    double until = separated_until(pair, direction_between(pair.kind, x, places), x, t, end);
+    if (until <= t) {  // as a face collapses its normal is told for longer than places within it
+      const Eigen::Vector3d n = normal_of_touch(pair.kind, x);
+      until = separated_until(pair, std::copysign(1, n.dot(places.difference)) * n, x, t, end);
+    }
     if (until > end) return std::nullopt;
     if (until <= t) return Meeting{t, x, places};
     t = until;

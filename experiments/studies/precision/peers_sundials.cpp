@@ -69,82 +69,91 @@ bool through_samples(const Problem& problem, FirstOrderProblem& equations, const
   return true;
 }
 
-Attempt attempt_cvode(Problem& problem, double tolerance, double time_limit) {
+// What the three solvers have each under a name of its own.
+struct Cvode {
+  static void* create(N_Vector start, SUNContext context) {
+    void* memory = CVodeCreate(CV_BDF, context);
+    return CVodeInit(memory, derivative, 0, start) == CV_SUCCESS ? memory : nullptr;
+  }
+  static constexpr auto set_error_file = CVodeSetErrFile;
+  static constexpr auto set_tolerances = CVodeSVtolerances;
+  static constexpr auto set_user_data = CVodeSetUserData;
+  static constexpr auto set_most_steps = CVodeSetMaxNumSteps;
+  static constexpr auto set_stop_time = CVodeSetStopTime;
+  static constexpr auto set_linear_solver = CVodeSetLinearSolver;
+  static constexpr auto advance = CVode;
+  static constexpr auto steps = CVodeGetNumSteps;
+  static constexpr auto release = CVodeFree;
+};
+struct Dirk {
+  static void* create(N_Vector start, SUNContext context) {
+    return ARKStepCreate(nullptr, derivative, 0, start, context);
+  }
+  static constexpr auto set_error_file = ARKStepSetErrFile;
+  static constexpr auto set_tolerances = ARKStepSVtolerances;
+  static constexpr auto set_user_data = ARKStepSetUserData;
+  static constexpr auto set_most_steps = ARKStepSetMaxNumSteps;
+  static constexpr auto set_stop_time = ARKStepSetStopTime;
+  static constexpr auto set_linear_solver = ARKStepSetLinearSolver;
+  static constexpr auto advance = ARKStepEvolve;
+  static constexpr auto steps = ARKStepGetNumSteps;
+  static constexpr auto release = ARKStepFree;
+};
+struct Explicit {
+  static void* create(N_Vector start, SUNContext context) {
+    return ERKStepCreate(derivative, 0, start, context);
+  }
+  static constexpr auto set_error_file = ERKStepSetErrFile;
+  static constexpr auto set_tolerances = ERKStepSVtolerances;
+  static constexpr auto set_user_data = ERKStepSetUserData;
+  static constexpr auto set_most_steps = ERKStepSetMaxNumSteps;
+  static constexpr auto set_stop_time = ERKStepSetStopTime;
+  static constexpr auto advance = ERKStepEvolve;
+  static constexpr auto steps = ERKStepGetNumSteps;
+  static constexpr auto release = ERKStepFree;
+};
+
+template <class Library>
+constexpr bool is_implicit = requires {
+  Library::set_linear_solver;
+};
+
+template <class Library>
+Attempt attempt(Problem& problem, double tolerance, double time_limit) {
   FirstOrderProblem equations(problem, time_limit);
   const Context context;
   Vector y = equations.start(), absolute = absolute_tolerances(problem, tolerance);
   const VectorView state = view(y, context), tolerances = view(absolute, context);
-  void* memory = CVodeCreate(CV_BDF, context);
-  SUNLinearSolver solver = SUNLinSol_SPGMR(state.get(), SUN_PREC_NONE, krylov_basis, context);
-  bool good = CVodeInit(memory, derivative, 0, state.get()) == CV_SUCCESS &&
-              CVodeSetErrFile(memory, nullptr) == CV_SUCCESS &&
-              CVodeSVtolerances(memory, tolerance, tolerances.get()) == CV_SUCCESS &&
-              CVodeSetUserData(memory, &equations) == CV_SUCCESS &&
-              CVodeSetMaxNumSteps(memory, -1) == CV_SUCCESS &&
-              CVodeSetStopTime(memory, problem.duration()) == CV_SUCCESS &&
-              CVodeSetLinearSolver(memory, solver, nullptr) == CV_SUCCESS;
+  void* memory = Library::create(state.get(), context);
+  SUNLinearSolver solver = nullptr;
+  bool good = memory && Library::set_error_file(memory, nullptr) == 0 &&
+              Library::set_tolerances(memory, tolerance, tolerances.get()) == 0 &&
+              Library::set_user_data(memory, &equations) == 0 && Library::set_most_steps(memory, -1) == 0 &&
+              Library::set_stop_time(memory, problem.duration()) == 0;
+  if constexpr (is_implicit<Library>) {
+    solver = SUNLinSol_SPGMR(state.get(), SUN_PREC_NONE, krylov_basis, context);
+    good = good && Library::set_linear_solver(memory, solver, nullptr) == 0;
+  }
   good = good && through_samples(problem, equations, y, [&](double t) {
            realtype reached = 0;
-           return CVode(memory, t, state.get(), &reached, CV_NORMAL) >= 0;
+           constexpr int to_the_time = 1;  // CV_NORMAL, ARK_NORMAL
+           return Library::advance(memory, t, state.get(), &reached, to_the_time) >= 0;
          });
   long steps = 0;
-  CVodeGetNumSteps(memory, &steps);
-  CVodeFree(&memory);
-  SUNLinSolFree(solver);
+  if (memory) Library::steps(memory, &steps);
+  Library::release(&memory);
+  if (solver) SUNLinSolFree(solver);
   return equations.finish(good, steps);
 }
 
-Attempt attempt_dirk(Problem& problem, double tolerance, double time_limit) {
-  FirstOrderProblem equations(problem, time_limit);
-  const Context context;
-  Vector y = equations.start(), absolute = absolute_tolerances(problem, tolerance);
-  const VectorView state = view(y, context), tolerances = view(absolute, context);
-  void* memory = ARKStepCreate(nullptr, derivative, 0, state.get(), context);
-  SUNLinearSolver solver = SUNLinSol_SPGMR(state.get(), SUN_PREC_NONE, krylov_basis, context);
-  bool good = ARKStepSetErrFile(memory, nullptr) == ARK_SUCCESS &&
-              ARKStepSVtolerances(memory, tolerance, tolerances.get()) == ARK_SUCCESS &&
-              ARKStepSetUserData(memory, &equations) == ARK_SUCCESS &&
-              ARKStepSetMaxNumSteps(memory, -1) == ARK_SUCCESS &&
-              ARKStepSetStopTime(memory, problem.duration()) == ARK_SUCCESS &&
-              ARKStepSetLinearSolver(memory, solver, nullptr) == ARK_SUCCESS;
-  good = good && through_samples(problem, equations, y, [&](double t) {
-           realtype reached = 0;
-           return ARKStepEvolve(memory, t, state.get(), &reached, ARK_NORMAL) >= 0;
-         });
-  long steps = 0;
-  ARKStepGetNumSteps(memory, &steps);
-  ARKStepFree(&memory);
-  SUNLinSolFree(solver);
-  return equations.finish(good, steps);
-}
-
-Attempt attempt_arkode(Problem& problem, double tolerance, double time_limit) {
-  FirstOrderProblem equations(problem, time_limit);
-  const Context context;
-  Vector y = equations.start(), absolute = absolute_tolerances(problem, tolerance);
-  const VectorView state = view(y, context), tolerances = view(absolute, context);
-  void* memory = ERKStepCreate(derivative, 0, state.get(), context);
-  bool good = ERKStepSetErrFile(memory, nullptr) == ARK_SUCCESS &&
-              ERKStepSVtolerances(memory, tolerance, tolerances.get()) == ARK_SUCCESS &&
-              ERKStepSetUserData(memory, &equations) == ARK_SUCCESS &&
-              ERKStepSetMaxNumSteps(memory, -1) == ARK_SUCCESS &&
-              ERKStepSetStopTime(memory, problem.duration()) == ARK_SUCCESS;
-  good = good && through_samples(problem, equations, y, [&](double t) {
-           realtype reached = 0;
-           return ERKStepEvolve(memory, t, state.get(), &reached, ARK_NORMAL) >= 0;
-         });
-  long steps = 0;
-  ERKStepGetNumSteps(memory, &steps);
-  ERKStepFree(&memory);
-  return equations.finish(good, steps);
-}
+static_assert(CV_NORMAL == 1 && ARK_NORMAL == 1 && CV_SUCCESS == 0 && ARK_SUCCESS == 0);
 
 }  // namespace
 
 std::vector<Contestant> sundials_contestants(Problem& problem) {
-  return {library_contestant("CVODE BDF GMRES", problem, attempt_cvode),
-          library_contestant("ARKODE DIRK GMRES", problem, attempt_dirk),
-          library_contestant("ARKODE explicit", problem, attempt_arkode)};
+  return {library_contestant("CVODE BDF GMRES", problem, attempt<Cvode>),
+          library_contestant("ARKODE DIRK GMRES", problem, attempt<Dirk>),
+          library_contestant("ARKODE explicit", problem, attempt<Explicit>)};
 }
 
 }  // namespace springstab

@@ -21,6 +21,7 @@
 #include "tests/dense.h"
 #include "tests/random_nets.h"
 #include "tests/refusals.h"
+#include "tests/resumed_contact.h"
 #include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(contact)
@@ -28,6 +29,7 @@ BOOST_AUTO_TEST_SUITE(contact)
 using namespace springstab;
 using Eigen::Vector3d;
 using springstab::test::expect_error;
+using springstab::test::expect_same_when_resumed;
 using springstab::test::random_vector;
 
 namespace {
@@ -378,37 +380,12 @@ BOOST_AUTO_TEST_CASE(steps_in_contact_allocate_nothing) {
 BOOST_AUTO_TEST_CASE(a_run_from_a_checkpoint_in_contact_ends_in_the_same_bits) {
   for (const char* method : {"symplectic-euler", "bdf2", "newmark", "velocity-verlet"})
     BOOST_TEST_CONTEXT(method) {
-      State<Vector> whole, kept, split;
-      RunSoFar kept_run;
-      ContactCounts kept_counts, counts[2];
-      for (const bool resumed : {false, true}) {
-        Subject subject = subject_of(falling_cloth("\"impulses\""));
-        const auto filter = subject.contact_filter();
-        const EnergyWatch watch = subject.energy_watch(subject.initial_state());
-        const auto stepper = Method(method).stepper();
-        State<Vector> state = resumed ? kept : subject.initial_state();
-        if (resumed) filter->set_counts(kept_counts);
-        const Observer observe = [&](const RunSoFar& run, const State<Vector>& now) {
-          if (run.steps == 1024 && !resumed) {
-            BOOST_REQUIRE(run.at_checkpoint);
-            kept = now;
-            kept_run = run;
-            kept_counts = filter->counts();
-          }
-          return true;
-        };
-        if (resumed)
-          resume_simulation(subject.system(), *stepper, kept_run, watch, state, observe, {}, filter.get());
-        else
-          simulate(subject.system(), *stepper, {2e-4, 1600}, watch, state, observe, {}, filter.get());
-        (resumed ? split : whole) = state;
-        counts[resumed] = filter->counts();
-      }
-      BOOST_TEST((whole.x == split.x && whole.v == split.v));
-      BOOST_TEST(counts[0].impulses == counts[1].impulses);
-      BOOST_TEST(counts[0].normal_work == counts[1].normal_work);
-      BOOST_TEST(counts[0].impulses > kept_counts.impulses);
-      BOOST_TEST(kept_counts.impulses > 0);
+      expect_same_when_resumed(
+          [](const auto& run) {
+            Subject subject = subject_of(falling_cloth("\"impulses\""));
+            run(subject);
+          },
+          Method(method), 1600, 1024);
     }
 }
 

@@ -20,6 +20,7 @@
 #include "tests/intersections.h"
 #include "tests/random_nets.h"
 #include "tests/refusals.h"
+#include "tests/resumed_contact.h"
 #include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(self_contact)
@@ -28,6 +29,7 @@ using namespace springstab;
 using Eigen::Vector3d;
 using springstab::test::Corners;
 using springstab::test::expect_error;
+using springstab::test::expect_same_when_resumed;
 using springstab::test::intersecting_triangles;
 using springstab::test::random_vector;
 
@@ -87,6 +89,8 @@ std::string folding(const std::string& more = "") {
          more + "}}";
 }
 
+constexpr double nearest_allowed = 0.5 * (1 - 1e-9);  // thicknesses, to rounding: nearer is no way to go
+
 /// A scene of a file beside a box.
 struct Surfaces : test::ScratchFolder {
   Subject subject;
@@ -129,6 +133,15 @@ struct Surfaces : test::ScratchFolder {
     return std::all_of(g.begin(), g.end(), [&](int i) { return std::abs(n.dot(all[i] - all[f[0]])) < 1e-9; });
   }
 
+  /// Of a particle to a plane or ball [thicknesses].
+  double nearest(double t, const Vector& x) const {
+    double least = HUGE_VAL;
+    for (const Obstacle& obstacle : subject.contact()->obstacles)
+      for (Eigen::Index i = 0; i < x.size(); i += 3)
+        least = std::min(least, gap_at(obstacle, x.segment<3>(i), t).gap);
+    return least / subject.contact()->thickness;
+  }
+
   double energy(const State<Vector>& s) {
     return subject.system().kinetic_energy(s.v) + subject.system().potential_energy(s.x);
   }
@@ -150,7 +163,8 @@ struct SurfaceRun {
   State<Vector> end;
   ContactCounts counts;
   long intersections = 0;
-  double largest_gain = 0;  // of energy over the start, beyond what obstacles gave [J]
+  double largest_gain = 0;    // of energy over the start, beyond what obstacles gave [J]
+  double nearest = HUGE_VAL;  // of a particle to a plane or ball [thicknesses]
 };
 
 SurfaceRun run(Surfaces& scene, const std::string& method, double h, long steps) {
@@ -162,6 +176,7 @@ SurfaceRun run(Surfaces& scene, const std::string& method, double h, long steps)
   const EnergyWatch watch = with_obstacles(subject.energy_watch(run.end), *subject.contact());
   const Observer observe = [&](const RunSoFar& so_far, const State<Vector>& now) {
     run.intersections += scene.intersections(so_far.time, now.x);
+    run.nearest = std::min(run.nearest, scene.nearest(so_far.time, now.x));
     run.largest_gain = std::max(run.largest_gain, scene.energy(now) - first - filter->counts().obstacle_work);
     return true;
   };
@@ -298,6 +313,7 @@ BOOST_AUTO_TEST_CASE(no_step_of_any_method_ends_in_an_intersection, *boost::unit
         const double weight = 9.81 * scene.subject.scene()->total_free_mass();
         BOOST_TEST((done.result.status == StepStatus::done));
         BOOST_TEST(done.intersections == 0);
+        BOOST_TEST(done.nearest > nearest_allowed);
         BOOST_TEST(done.counts.impulses > 1000);
         BOOST_TEST(done.counts.friction_work < 0);
         BOOST_TEST(done.largest_gain < 2 * h * weight);
@@ -448,40 +464,12 @@ BOOST_AUTO_TEST_CASE(where_surfaces_do_not_touch_nothing_changes) {
 BOOST_AUTO_TEST_CASE(a_run_of_surfaces_from_a_checkpoint_ends_in_the_same_bits) {
   if (without_embree()) return;
   for (const char* method : {"symplectic-euler", "bdf2", "rk4"}) BOOST_TEST_CONTEXT(method) {
-      State<Vector> kept, ends[2];
-      RunSoFar kept_run;
-      ContactCounts kept_counts, counts[2];
-      for (const bool resumed : {false, true}) {
-        Surfaces scene(folding());
-        Subject& subject = scene.subject;
-        const auto filter = subject.contact_filter();
-        const EnergyWatch watch = subject.energy_watch(subject.initial_state());
-        const auto stepper = Method(method).stepper();
-        State<Vector> state = resumed ? kept : subject.initial_state();
-        if (resumed) filter->set_counts(kept_counts);
-        const Observer observe = [&](const RunSoFar& run, const State<Vector>& now) {
-          if (run.steps == 800 && !resumed) {
-            BOOST_REQUIRE(run.at_checkpoint);
-            kept = now;
-            kept_run = run;
-            kept_counts = filter->counts();
-          }
-          return true;
-        };
-        if (resumed)
-          resume_simulation(subject.system(), *stepper, kept_run, watch, state, observe, {}, filter.get());
-        else
-          simulate(subject.system(), *stepper, {2e-4, 1200}, watch, state, observe, {}, filter.get());
-        ends[resumed] = state;
-        counts[resumed] = filter->counts();
-      }
-      BOOST_TEST((ends[0].x == ends[1].x && ends[0].v == ends[1].v));
-      BOOST_TEST(counts[0].pairs == counts[1].pairs);
-      BOOST_TEST(counts[0].impulses == counts[1].impulses);
-      BOOST_TEST(counts[0].lifts == counts[1].lifts);
-      BOOST_TEST(counts[0].passes == counts[1].passes);
-      BOOST_TEST(counts[0].normal_work == counts[1].normal_work);
-      BOOST_TEST(counts[0].impulses > kept_counts.impulses);
+      expect_same_when_resumed(
+          [](const auto& run) {
+            Surfaces scene(folding());
+            run(scene.subject);
+          },
+          Method(method), 1200, 800);
     }
 }
 
@@ -496,6 +484,7 @@ BOOST_AUTO_TEST_CASE(where_obstacles_leave_no_way_the_run_stops_before_it) {
   BOOST_TEST((stopped.result.status == StepStatus::not_converged));
   BOOST_TEST(stopped.counts.surfaces->blocked == 1);
   BOOST_TEST(stopped.intersections == 0);
+  BOOST_TEST(stopped.nearest > nearest_allowed);
   // From 0.08 m to between one and two thicknesses.
   BOOST_TEST(stopped.result.time > 0.07 / 0.5 - 1e-3);
   BOOST_TEST(stopped.result.time < 0.075 / 0.5 + 1e-3);

@@ -103,28 +103,44 @@ bool SurfaceImpulses::move_to(double t, double h, const State<Vector>& before, c
   return true;
 }
 
-// Parts what is too near at x_, to the thickness and no more. Whether that moved anything.
+// Parts what is too near at x_, to the thickness and no more, as long as that leaves more room than there
+// was: between two that cannot yield there is none to gain. Whether that moved anything.
 bool SurfaceImpulses::part(double t) {
-  bool moved = false;
-  for (int pass = 0; pass < most_partings; ++pass) {
-    double nearest = 0;
-    active_.clear();
-    for (const Entered& e : search_.too_near(x_, t)) {
-      active_.push_back(e.contact);
-      nearest = std::min(nearest, e.gap);
+  double nearest = -HUGE_VAL;
+  long lifts = 0;
+  int passes = 0;
+  for (;; ++passes) {
+    const double before = nearest;
+    nearest = list_too_near(t);
+    if (nearest <= before) {
+      std::swap(x_, y_);
+      --passes;
+      break;
     }
-    if (nearest >= -parted_from * contact_.thickness) return moved;
+    counts_.lifts += lifts;
+    if (nearest >= -parted_from * contact_.thickness) return passes > 0;
+    if (passes == most_partings) break;
     v_.assign(search_.nodes(), Eigen::Vector3d::Zero());
     impulses_.solve(active_, 0, v_);
     y_.resize(x_.size());
     for (std::size_t i = 0; i < x_.size(); ++i) y_[i] = x_[i] + v_[i];
     if (search_.collide(x_, y_)) break;
     std::swap(x_, y_);
-    for (const PairContact& c : active_) counts_.lifts += c.r > 0;
-    moved = true;
+    lifts = std::count_if(active_.begin(), active_.end(), [](const PairContact& c) { return c.r > 0; });
   }
   ++counts_.unresolved;
-  return moved;
+  return passes > 0;
+}
+
+// Makes what is too near at x_ active; by how much the nearest lacks the thickness, negative.
+double SurfaceImpulses::list_too_near(double t) {
+  double nearest = 0;
+  active_.clear();
+  for (const Entered& e : search_.too_near(x_, t)) {
+    active_.push_back(e.contact);
+    nearest = std::min(nearest, e.gap);
+  }
+  return nearest;
 }
 
 // Makes v_ the velocity from x_ that enters nothing.

@@ -37,6 +37,7 @@ class SurfaceImpulses final : public ContactFilter {
   bool is_as_said(double h, const State<Vector>& before, const Vector& x) const;
   bool move_to(double t, double h, const State<Vector>& before, const Vector& x, bool& moved);
   bool part(double t);
+  double list_too_near(double t);
   Way push(double t, double h, const State<Vector>& before, const Vector& v);
   Way find_way(double t, double h, Unless unless);
   bool take_over(double h, int pass);

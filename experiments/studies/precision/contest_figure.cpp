@@ -23,19 +23,29 @@ int at_limit(const ContestSeries& series, const ContestRun& run) {
   });
 }
 
+// What is nearer to the reference than can be told is not.
+bool is_drawn(const ContestRun& run) { return run.outcome != Outcome::finished || run.compared; }
+
+std::vector<const ContestSeries*> drawn(const ContestResult& result) {
+  std::vector<const ContestSeries*> series;
+  for (const ContestSeries& s : result.series)
+    if (std::ranges::any_of(s.runs, is_drawn)) series.push_back(&s);
+  return series;
+}
+
 // A block of rows per contestant: x (seconds), least, most, error, equivalents, at the limit, and what
 // became of it: 0 finished, 1 diverged or failed, 2 timed out. Without an error, 'NaN' to gnuplot.
 void write_points(const std::string& path, const ContestResult& result) {
   OutputFile file(path);
   std::ostream& out = file.stream();
-  for (const ContestSeries& s : result.series) {
-    out << "# " << s.contestant.name << "\n# seconds,least,most,error,equivalents,at_limit,outcome\n";
-    for (const ContestRun& run : s.runs) {
-      if (run.outcome == Outcome::finished && !run.compared) continue;
+  for (const ContestSeries* s : drawn(result)) {
+    out << "# " << s->contestant.name << "\n# seconds,least,most,error,equivalents,at_limit,outcome\n";
+    for (const ContestRun& run : s->runs) {
+      if (!is_drawn(run)) continue;
       const auto [least, most] = std::ranges::minmax(run.seconds);
       out << run.median_seconds() << ',' << least << ',' << most << ',';
       if (run.errors) out << run.errors->trajectory;
-      out << ',' << run.equivalents() << ',' << at_limit(s, run) << ','
+      out << ',' << run.equivalents() << ',' << at_limit(*s, run) << ','
           << (run.outcome == Outcome::finished    ? 0
               : run.outcome == Outcome::timed_out ? 2
                                                   : 1)
@@ -67,10 +77,10 @@ std::string settings_of(const ContestResult& result, const std::string& data, st
                      run ? static_cast<double>(run->equivalents()) : 1, order, panel,
                      run ? run->errors->trajectory : 1);
   }
-  settings += text("series_%zu=%zu; ", panel, result.series.size());
-  for (std::size_t j = 0; j < result.series.size(); ++j)
-    settings +=
-        text("name_%zu_%zu=", panel, j + 1) + gnuplot_literal(result.series[j].contestant.name) + "; ";
+  const std::vector<const ContestSeries*> series = drawn(result);
+  settings += text("series_%zu=%zu; ", panel, series.size());
+  for (std::size_t j = 0; j < series.size(); ++j)
+    settings += text("name_%zu_%zu=", panel, j + 1) + gnuplot_literal(series[j]->contestant.name) + "; ";
   return settings;
 }
 
@@ -78,8 +88,8 @@ std::string settings_of(const ContestResult& result, const std::string& data, st
 std::string keys(const std::vector<ContestResult>& results) {
   std::vector<std::string> names;
   for (const ContestResult& result : results)
-    for (const ContestSeries& s : result.series)
-      if (std::ranges::find(names, s.contestant.name) == names.end()) names.push_back(s.contestant.name);
+    for (const ContestSeries* s : drawn(result))
+      if (std::ranges::find(names, s->contestant.name) == names.end()) names.push_back(s->contestant.name);
   std::string settings = text("keys=%zu; ", names.size());
   for (std::size_t j = 0; j < names.size(); ++j)
     settings += text("key_%zu=", j + 1) + gnuplot_literal(names[j]) + "; ";

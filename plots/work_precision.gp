@@ -24,7 +24,7 @@ colour(name) = has(name, 'SDIRK2') ? 0xaa3377 : has(name, 'BDF2') ? 0x661100 : h
     has(name, 'CG 0.01') ? 0x882255 : has(name, 'CG 1e-08') ? 0x332288 : has(name, 'implicit') ? 0x000000 : \
     has(name, 'Runge-Kutta 4') ? 0x0072b2 : has(name, 'ARKODE') ? 0x7a5195 : has(name, 'CVODE') ? 0x8c564b : \
     has(name, 'odeint') ? 0x999933 : has(name, 'bsimp') ? 0x117733 : has(name, 'GSL') ? 0x777777 : 0xcc79a7
-point(name) = has(name, 'SDIRK2') ? 3 : has(name, 'BDF2') ? 1 : has(name, 'DIRK') ? 9 : has(name, 'msbdf') ? 6 : has(name, 'bsimp') ? 4 : has(name, 'linearized explicit') ? 4 : has(name, 'linearized Runge') ? 6 : has(name, 'explicit Euler') ? 5 : \
+point(name) = has(name, 'SDIRK2') ? 3 : has(name, 'BDF2') ? 1 : has(name, 'DIRK') ? 15 : has(name, 'msbdf') ? 6 : has(name, 'bsimp') ? 4 : has(name, 'linearized explicit') ? 4 : has(name, 'linearized Runge') ? 6 : has(name, 'explicit Euler') ? 5 : \
     has(name, 'symplectic') ? 13 : has(name, 'CG 0.01') ? 11 : has(name, 'CG 1e-08') ? 15 : has(name, 'implicit') ? 2 : \
     has(name, 'Runge-Kutta 4') ? 7 : has(name, 'ARKODE') ? 8 : has(name, 'CVODE') ? 10 : has(name, 'odeint') ? 12 : \
     has(name, 'GSL') ? 14 : 9

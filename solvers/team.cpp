@@ -27,7 +27,8 @@ void wait_while(const std::atomic<unsigned>& number, unsigned value) {
 }
 
 /// The threads beside those that come to a loop. A loop is handed to all of them at once: each takes the
-/// parts that are its own, if any.
+/// parts that are its own, if any; who came to the loop then takes those that nobody has begun, since on a
+/// machine that is busy otherwise a thread may have no core to begin on.
 class Team {
  public:
   ~Team() { dismiss(); }
@@ -38,6 +39,8 @@ class Team {
     if (count == threads()) return;
     dismiss();
     threads_ = count;
+    begun_ = std::vector<std::atomic<unsigned>>(static_cast<std::size_t>(count));
+    for (std::atomic<unsigned>& begun : begun_) begun = loop_.load();
   }
 
   void share(int parts, void (*call)(const void*, int), const void* work) {
@@ -47,10 +50,10 @@ class Team {
     }
     call_members();
     parts_ = parts, call_ = call, work_ = work;
-    left_.store(static_cast<unsigned>(members_.size()), std::memory_order_relaxed);
-    loop_.fetch_add(1, std::memory_order_release);
+    left_.store(static_cast<unsigned>(threads()), std::memory_order_relaxed);
+    const unsigned loop = loop_.fetch_add(1, std::memory_order_release) + 1;
     loop_.notify_all();
-    take_parts(0);
+    for (int thread = 0; thread < threads(); ++thread) take_parts(thread, loop);
     for (unsigned left = left_.load(std::memory_order_acquire); left > 0;
          left = left_.load(std::memory_order_acquire))
       wait_while(left_, left);
@@ -66,16 +69,20 @@ class Team {
     threads_ = static_cast<int>(members_.size()) + 1;
   }
 
-  void take_parts(int thread) const {
+  // Unless they are begun, or the loop is over.
+  void take_parts(int thread, unsigned loop) {
+    unsigned before = loop - 1;
+    if (!begun_[thread].compare_exchange_strong(before, loop, std::memory_order_relaxed)) return;
     for (int part = thread; part < parts_; part += threads()) call_(work_, part);
+    if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_one();
   }
 
   void serve(int thread, unsigned seen) {
-    for (;; ++seen) {
+    for (;;) {
       wait_while(loop_, seen);
       if (dismissed_) return;
-      take_parts(thread);
-      if (left_.fetch_sub(1, std::memory_order_acq_rel) == 1) left_.notify_one();
+      seen = loop_.load(std::memory_order_acquire);
+      take_parts(thread, seen);
     }
   }
 
@@ -89,7 +96,9 @@ class Team {
 
   std::atomic<int> threads_{1};
   std::atomic_flag busy_;
-  std::atomic<unsigned> loop_{0}, left_{0};  // the number of the loop; who has not finished it
+  std::atomic<unsigned> loop_{0}, left_{0};  // the number of the loop; threads whose parts are not finished
+  std::vector<std::atomic<unsigned>> begun_ =
+      std::vector<std::atomic<unsigned>>(1);  // of each thread's parts, the last loop that began them
   std::atomic<bool> dismissed_{false};
   int parts_ = 0;
   void (*call_)(const void*, int) = nullptr;

@@ -17,6 +17,14 @@ set logscale xy
 set format x '10^{%T}'
 set format y '10^{%T}'
 set xrange [x_min:x_max]
+# Less than a decade has at most one power of ten to name.
+if (x_max < 100 * x_min) {
+    set xtics ()
+    set format x '%g'
+    do for [power = floor(log10(x_min)):floor(log10(x_max))] {
+        set xtics add (10**power, 2 * 10**power, 5 * 10**power)
+    }
+}
 set border 3
 set tics out nomirror
 set grid lw 0.7 lc rgb '#e4e4e4'

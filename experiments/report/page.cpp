@@ -30,6 +30,7 @@ caption{text-align:left;padding-bottom:.4rem}
 th,td{padding:.32rem .8rem .32rem 0;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}
 thead th{color:var(--soft);font-weight:600;vertical-align:bottom}
 tbody th{font-weight:600;white-space:nowrap}
+.numbers td{white-space:nowrap}
 .numbers td,.numbers thead th:not(:first-child){text-align:right}
 dl{display:grid;grid-template-columns:max-content 1fr;gap:.25rem 1.4rem;margin:.6rem 0}
 dt{color:var(--soft)}

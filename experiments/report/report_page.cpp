@@ -12,6 +12,12 @@
 namespace springstab {
 namespace {
 
+std::string contact_text(const Contact& contact) {
+  const std::size_t obstacles = contact.obstacles.size() + contact.meshes.size();
+  return text("with %zu obstacle%s%s, which the picture leaves out", obstacles, obstacles == 1 ? "" : "s",
+              contact.self ? " and of the cloth with itself" : "");
+}
+
 std::string seconds_of(const Json& value) {
   if (value.is_null()) return "–";
   return value.is_string() ? "∞" : text("%.6g", value.get<double>());
@@ -113,9 +119,7 @@ void ReportPage::add_scene() {
   facts.emplace_back("unknowns", std::to_string(s.size()));
   if (!subject.scene()) facts.emplace_back("entries of K", std::to_string(s.stiffness.nonZeros()));
   facts.emplace_back("damping", damping_text());
-  if (subject.contact())
-    facts.emplace_back(
-        "contact", text("%zu obstacles, which the picture leaves out", subject.contact()->obstacles.size()));
+  if (subject.contact()) facts.emplace_back("contact", contact_text(*subject.contact()));
   page_.facts(facts);
 }
 

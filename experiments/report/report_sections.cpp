@@ -12,6 +12,20 @@
 namespace springstab {
 namespace {
 
+const char* why_stopped(StepStatus status) {
+  switch (status) {
+    case StepStatus::diverged:
+      return ": it diverged";
+    case StepStatus::not_positive_definite:
+      return ": 1 + hD' + h²K' was not positive definite, as springs in compression may make it";
+    case StepStatus::not_converged:
+      return ": a step had no solution";
+    case StepStatus::done:
+      break;
+  }
+  return "";
+}
+
 constexpr std::size_t most_regions = 2;
 constexpr const char* without_gnuplot = "No picture: gnuplot was not found.";
 
@@ -131,7 +145,9 @@ void ReportPage::add_motion() {
   else
     page_.paragraph(said + ' ' + without_gnuplot);
   if (!along.value->done)
-    page_.paragraph(text("The run did not come to its end at %.4g s.", along.value->duration), "warnings");
+    page_.paragraph(text("The run stopped at %.4g s of %.4g s%s.", along.value->end, along.value->duration,
+                         why_stopped(along.value->status)),
+                    "warnings");
 }
 
 }  // namespace springstab

@@ -108,7 +108,7 @@ Told<K0AlongMotion> k0_along_motion(const CommonOptions& common, LimitsAnswer& a
   if (!plan) return {{}, "Left out: no run can start, for no stable step is known."};
   const MomentsOfRun run = moments_of(subject, chooser, *plan, end,
                                       static_cast<int>(std::min<long>(plan->steps, k0_samples)), common);
-  K0AlongMotion along{method.name(), plan->h, end, {}, run.done};
+  K0AlongMotion along{method.name(), plan->h, end, {}, run.time, run.status, run.done};
   double first = 0;
   for (const Moment& moment : run.moments) {
     const StiffestMode k0 = estimated_stiffest_mode(subject.structure(moment.state).matrices,

@@ -33,7 +33,9 @@ struct K0AlongMotion {
   std::string method;
   double step, duration;                          // [s]
   std::vector<std::pair<double, double>> points;  // time [s], k0 over that of the start
-  bool done;                                      // the run came to its end
+  double end;                                     // how far the run came [s]
+  StepStatus status;
+  bool done;  // it came to its end
 };
 
 /// Of a run by this method at the step to use: 1 s or a few thousand steps, or `duration` [s]. Last of all:

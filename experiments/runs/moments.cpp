@@ -25,7 +25,7 @@ MomentsOfRun moments_of(Subject& subject, StepChooser& chooser, const StepPlan& 
       chooser.policy(), contact.get());
   const bool done =
       run.result.status == StepStatus::done && moments.size() == static_cast<std::size_t>(count) + 1;
-  return {std::move(moments), run.result.time, done};
+  return {std::move(moments), run.result.time, run.result.status, done};
 }
 
 }  // namespace springstab

@@ -19,6 +19,7 @@ struct Moment {
 struct MomentsOfRun {
   std::vector<Moment> moments;
   double time;  // [s]
+  StepStatus status;
   bool done;
 };
 

@@ -325,7 +325,7 @@ BOOST_AUTO_TEST_CASE(consistent_masses_change_nothing) {
     }
 }
 
-BOOST_AUTO_TEST_CASE(limits_scale_with_the_unit_of_time) {
+BOOST_AUTO_TEST_CASE(limits_scale_with_the_unit_of_time, *boost::unit_test::label("slow")) {
   RandomNets random(3);
   for (int i = 0; i < 20; ++i) BOOST_TEST_CONTEXT("net " << i) {
       const StructuralMatrices s = matrices(random.net(true));
@@ -878,7 +878,7 @@ BOOST_AUTO_TEST_CASE(the_hospital_has_the_limits_of_its_notes) {
 }
 
 // One damper on a shaft with massless unknowns: no more is certified than eigenvalues allow.
-BOOST_AUTO_TEST_CASE(the_shaft_is_certified_below_its_limit) {
+BOOST_AUTO_TEST_CASE(the_shaft_is_certified_below_its_limit, *boost::unit_test::label("slow")) {
   const auto k = shared_data("matrices/nlevp_shaft_K.mtx"), m = shared_data("matrices/nlevp_shaft_M.mtx"),
              c = shared_data("matrices/nlevp_shaft_C.mtx");
   if (!k || !m || !c) return;

@@ -253,7 +253,8 @@ Tally check_all_pairs(const Soup& soup) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(of_a_million_pairs_of_moving_triangles_every_collision_is_found) {
+BOOST_AUTO_TEST_CASE(of_a_million_pairs_of_moving_triangles_every_collision_is_found,
+                     *boost::unit_test::label("slow")) {
   Random random(1);
   Tally all;
   for (int scale = -3; scale <= 3; ++scale) {

@@ -257,7 +257,7 @@ BOOST_AUTO_TEST_CASE(names_may_be_in_any_language) {
 }
 
 // In Germany 2.5 is written 2,5: everything that is read and written stays as it is.
-BOOST_AUTO_TEST_CASE(a_decimal_comma_changes_nothing) {
+BOOST_AUTO_TEST_CASE(a_decimal_comma_changes_nothing, *boost::unit_test::label("slow")) {
   const std::string german = "export LOCPATH=\"$PWD\" LC_ALL=de_DE.UTF-8; ";
   shell("localedef -i de_DE -f UTF-8 \"$PWD/de_DE.UTF-8\"");
   if (shell(german + "locale decimal_point").out != ",\n") {

@@ -154,7 +154,7 @@ Outcome browse(const Command& command, const std::string& options) {
 
 }  // namespace
 
-BOOST_AUTO_TEST_CASE(the_page_says_what_limits_says) {
+BOOST_AUTO_TEST_CASE(the_page_says_what_limits_says, *boost::unit_test::label("slow")) {
   const std::string input = "--grid 6x5 --pin first-row ";
   const Outcome made = (*this)("report " + input + "--step 1e-3 --duration 0.01 -o r.html --json --quiet");
   BOOST_REQUIRE_MESSAGE(made.status == 0, made.err);
@@ -177,7 +177,7 @@ BOOST_AUTO_TEST_CASE(the_page_says_what_limits_says) {
 }
 
 // A scene with dampers, one of triangles, a solid, matrices with damping of their own: each has its sections.
-BOOST_AUTO_TEST_CASE(every_kind_of_input_has_a_page) {
+BOOST_AUTO_TEST_CASE(every_kind_of_input_has_a_page, *boost::unit_test::label("slow")) {
   const std::string sources = source_folder();
   file("K.mtx",
        "%%MatrixMarket matrix coordinate real symmetric\n3 3 5\n1 1 200\n2 1 -100\n2 2 200\n3 2 -100\n3 3 "

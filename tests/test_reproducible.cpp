@@ -70,7 +70,7 @@ const char* rotor =
 }  // namespace
 
 // 61 x 47 and 23 x 23 cells: neither the eight lanes nor the threads divide them.
-BOOST_AUTO_TEST_CASE(regions_do_not_depend_on_threads) {
+BOOST_AUTO_TEST_CASE(regions_do_not_depend_on_threads, *boost::unit_test::label("slow")) {
   for (const springstab::Method& info : springstab::all_methods()) {
     if (info.info().linearized) continue;  // the region of the method inside
     expect_same_bytes(*this,
@@ -146,13 +146,13 @@ BOOST_AUTO_TEST_CASE(large_runs_do_not_depend_on_threads) {
   expect_same_bytes(*this, "limits --grid 84x84 --pin first-row --method symplectic-euler --json", 0);
 }
 
-BOOST_AUTO_TEST_CASE(stress_cases_come_out_the_same_every_time) {
+BOOST_AUTO_TEST_CASE(stress_cases_come_out_the_same_every_time, *boost::unit_test::label("slow")) {
   expect_same_bytes(*this, "stress --filter impulse --json --output out", 1);
 }
 
 // The start of a matrix system and the start vectors of eigenvalue searches are random. The first makes
 // another motion; of the second k0 is independent within its residual, and a region has none.
-BOOST_AUTO_TEST_CASE(what_is_random_depends_on_the_seed) {
+BOOST_AUTO_TEST_CASE(what_is_random_depends_on_the_seed, *boost::unit_test::label("slow")) {
   file("chain.mtx", chain);
   const auto differ = [&](const std::string& arguments) {
     BOOST_TEST((result_of(*this, arguments, "--seed 1") == result_of(*this, arguments)));  // the default

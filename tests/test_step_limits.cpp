@@ -237,7 +237,7 @@ BOOST_AUTO_TEST_CASE(a_curve_that_touches_the_boundary_goes_on) {
   BOOST_TEST(close(region_of("explicit-euler").first_exit(curve), exit, 1e-9));
 }
 
-BOOST_AUTO_TEST_CASE(limits_scale_exactly_with_the_unit_of_time) {
+BOOST_AUTO_TEST_CASE(limits_scale_exactly_with_the_unit_of_time, *boost::unit_test::label("slow")) {
   for (const Method& method : all_methods()) {
     const StabilityRegion& region = region_of(method.name());
     for (const RayleighModes& m : random_modes(3, 4)) {

@@ -186,7 +186,7 @@ BOOST_AUTO_TEST_CASE(nets_with_dampers) {
   }
 }
 
-BOOST_AUTO_TEST_CASE(scenes) {
+BOOST_AUTO_TEST_CASE(scenes, *boost::unit_test::label("slow")) {
   const Grid size{4, 5, 0.2};
   BOOST_TEST_CONTEXT("cloth") {
     expect_all(scene_of(make_cloth(size, ClothMaterial{}), {1, 1e-4}),

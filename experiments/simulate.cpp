@@ -1,6 +1,8 @@
 // `springstab simulate`: runs a scene or a system of matrices with a step that is known to be stable.
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 
 #include "analysis/constants.h"
 #include "experiments/command/interrupt.h"
@@ -144,7 +146,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   const auto stepper = Method(options.method).stepper();
   if (subject.scene()) stepper->set_newton({.steps = options.newton});
   if (!resumed) stepper->start(counted, plan.h, course.end);
-  const long steps_a_look = subject.system().size() > many_unknowns ? 1 : 64;
+  const bool long_steps = subject.system().size() > many_unknowns;
   Progress progress("simulating", common.quiet);
   course.result = resume_simulation(
       counted, *stepper, std::move(begin.run), course.watch, course.end,
@@ -161,10 +163,14 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
             if (contact) kept_of_run["contact"] = json_of(contact->counts());
             return {so_far, s, kept_of_run};
           });
-        if (so_far.steps % steps_a_look == 0) progress.update(so_far.time / options.duration);
+        if (long_steps || so_far.at_checkpoint) progress.update(so_far.time / options.duration);
         return !interrupt.requested();
       },
-      chooser.policy(), contact.get());
+      chooser.policy(), contact.get(),
+      [&] {
+        return std::min({recorder->unseen_until(), film.unseen_until(),
+                         error ? error->unseen_until() : std::numeric_limits<double>::infinity()});
+      });
   if (contact) course.contact = contact->counts();
   course.cpu_seconds = cpu_seconds() - cpu_before;
   course.counts = counted.counts();

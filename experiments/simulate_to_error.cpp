@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <limits>
 
 #include "experiments/cheapest_report.h"
 #include "experiments/command/shared_options.h"
@@ -69,9 +70,13 @@ ErrorRun::ErrorRun(const CommonOptions& common, const SimulateOptions& options, 
 // After a divergence that was undone the run is back at an earlier time.
 void ErrorRun::see(double time, const State<Vector>& state) {
   while (!samples_.empty() && samples_.back().time > time) samples_.pop_back();
-  if (samples_.size() < static_cast<std::size_t>(error_samples) &&
-      time >= time_of_sample(options_.duration, samples_.size() + 1) * (1 - 1e-9))
-    samples_.push_back({time, state.x});
+  if (time >= unseen_until()) samples_.push_back({time, state.x});
+}
+
+double ErrorRun::unseen_until() const {
+  if (samples_.size() >= static_cast<std::size_t>(error_samples))
+    return std::numeric_limits<double>::infinity();
+  return time_of_sample(options_.duration, samples_.size() + 1) * (1 - 1e-9);
 }
 
 // The second run, with the damping of the first. Nothing where it does not finish.
@@ -88,18 +93,22 @@ std::optional<double> ErrorRun::difference(const State<Vector>& start, double h,
   std::size_t next = 0;
   State<Vector> state = start;
   Progress progress("estimating the error", common_.quiet);
+  const auto next_time = [&] {
+    return next < samples_.size() ? samples_[next].time * (1 - 1e-9)
+                                  : std::numeric_limits<double>::infinity();
+  };
   const auto result = simulate(
       system, *chooser.method().stepper(), plan, chooser.watch(start), state,
       [&](const RunSoFar& so_far, const State<Vector>& s) {
-        if (next < samples_.size() && so_far.time >= samples_[next].time * (1 - 1e-9)) {
+        if (so_far.time >= next_time()) {
           wrong += system.kinetic_energy(samples_[next].x - s.x);
           moved += system.kinetic_energy(s.x - start.x);
           ++next;
         }
-        if (so_far.steps % 64 == 0) progress.update(so_far.time / options_.duration);
+        if (so_far.at_checkpoint) progress.update(so_far.time / options_.duration);
         return !interrupt.requested();
       },
-      chooser.policy());
+      chooser.policy(), nullptr, next_time);
   if (result.status != StepStatus::done || next < samples_.size()) return std::nullopt;
   return wrong > 0 ? std::sqrt(wrong / moved) : 0;
 }

@@ -30,6 +30,8 @@ class ErrorRun {
 
   /// Sees every good state of the run.
   void see(double time, const State<Vector>& state);
+  /// Before that time it has no use for states [s].
+  double unseen_until() const;
   /// After a run whose last steps had length h [s]: makes the second one, unless interrupted. Whether the run
   /// is to be made again, which happens once.
   bool is_to_repeat(const State<Vector>& start, double h, const StopOnInterrupt& interrupt);

@@ -2,6 +2,7 @@
 // has to carry counters.
 #pragma once
 
+#include "solvers/step_by_rows.h"
 #include "solvers/system.h"
 
 namespace springstab {
@@ -60,6 +61,12 @@ class CountingSystem final : public System {
     SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
                               std::vector<Vector>& out) override {
       return target->solve_coupled(coupling, rhs, out);
+    }
+    long steps_at_once(int stages) const override { return target->steps_at_once(stages); }
+    bool take_steps(long steps, StepByRows& step) override {  // those that are lost are taken again
+      const bool taken = target->take_steps(steps, step);
+      if (taken) counts->block_products += steps * step.stages();
+      return taken;
     }
     double kinetic_energy(const Vector& v) override { return target->kinetic_energy(v); }
     double potential_energy(const Vector& x) override { return target->potential_energy(x); }

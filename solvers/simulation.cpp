@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace springstab {
 namespace {
@@ -13,10 +14,10 @@ double time_of(const Stage& stage, long step) {
 }
 
 // At whole linearizations, and at the end.
-bool at_checkpoint(const Stage& stage) {
-  const long each = stage.plan.steps_per_linearization;
+bool at_checkpoint(const StepPlan& plan, long step) {
+  const long each = plan.steps_per_linearization;
   const long distance = (least_checkpoint_distance + each - 1) / each * each;
-  return stage.done == stage.plan.steps || stage.done % distance == 0;
+  return step == plan.steps || step % distance == 0;
 }
 
 /// Where a run goes back to.
@@ -32,6 +33,51 @@ struct Checkpoint {
     steps = so_far.steps;
     time = so_far.time;
   }
+};
+
+/// Steps taken together, of which nobody looks at any but the last. What the watch would object to is left to
+/// steps one by one.
+class Together {
+ public:
+  Together(const Observer& observe, const UnseenUntil& unseen_until, const EnergyWatch& watch)
+      : observe_(observe), unseen_until_(unseen_until), watch_(watch) {}
+
+  /// How many it took, from where the stage is; if none, the next one is to be taken by itself.
+  long take(System& system, Stepper& stepper, const Stage& stage, State<Vector>& state) {
+    if (one_by_one_ > 0) {
+      --one_by_one_;
+      return 0;
+    }
+    const long most = steps_to_look(stage);
+    const long taken =
+        most < 2
+            ? 0
+            : stepper.take_steps(system, stage.plan.h, most, state, [&, this](long step, double kinetic) {
+                return !watch_.diverged(kinetic * (1 + rounding), time_of(stage, stage.done + step));
+              });
+    if (taken == 0) one_by_one_ = most - 1;
+    return taken;
+  }
+
+  /// The next step is by itself.
+  void pause() { one_by_one_ = 1; }
+
+ private:
+  static constexpr double rounding = 1e-6;  // of a sum
+
+  // To a checkpoint, or to a time at which the observer looks.
+  long steps_to_look(const Stage& stage) const {
+    constexpr double forever = std::numeric_limits<double>::infinity();
+    const double until = !observe_ ? forever : unseen_until_ ? unseen_until_() : -forever;
+    long step = stage.done + 1;
+    while (!at_checkpoint(stage.plan, step) && time_of(stage, step) < until) ++step;
+    return step - stage.done;
+  }
+
+  const Observer& observe_;
+  const UnseenUntil& unseen_until_;
+  const EnergyWatch& watch_;
+  long one_by_one_ = 0;
 };
 
 // A step to the time t, and the filter. `before` is workspace.
@@ -77,18 +123,20 @@ RunSoFar start_of(const StepPlan& plan) {
 
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe, const StepPolicy& policy,
-                          StepFilter* filter) {
+                          StepFilter* filter, const UnseenUntil& unseen_until) {
   stepper.start(system, plan.h, state);
-  return resume_simulation(system, stepper, start_of(plan), watch, state, observe, policy, filter);
+  return resume_simulation(system, stepper, start_of(plan), watch, state, observe, policy, filter,
+                           unseen_until);
 }
 
 SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
                                    State<Vector>& state, const Observer& observe, const StepPolicy& policy,
-                                   StepFilter* filter) {
+                                   StepFilter* filter, const UnseenUntil& unseen_until) {
   std::vector<Stage>& stages = run.stages;
   double h = stages.back().plan.h;  // for which the state carries what it does
   Checkpoint checkpoint{state, run.steps, run.time, h};
   State<Vector> before;  // the step that is filtered
+  Together together(observe, unseen_until, watch);
   stepper.restart(stages.back().plan.steps_per_linearization);
   if (observe && !observe(run, state)) return static_cast<SimulationResult&&>(run);
   const auto has_diverged = [&](double t) {
@@ -105,14 +153,18 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
       if (!stages.empty()) ++stages.back().done;
       continue;
     }
-    const double t = time_of(stage, stage.done + 1);
     if (h != stage.plan.h) stepper.change_step(system, h, stage.plan.h, state);
     h = stage.plan.h;
-    run.status = filter ? filtered_step(system, stepper, *filter, t, h, before, state)
-                        : stepper.step(system, h, state);
+    const long taken = filter ? 0 : together.take(system, stepper, stage, state);
+    stage.done += std::max(taken - 1, 0L);
+    run.steps += std::max(taken - 1, 0L);
+    const double t = time_of(stage, stage.done + 1);
+    run.status = filter      ? filtered_step(system, stepper, *filter, t, h, before, state)
+                 : taken > 0 ? StepStatus::done
+                             : stepper.step(system, h, state);
     if (run.status == StepStatus::done) {
       ++stage.done;
-      run.at_checkpoint = at_checkpoint(stage);
+      run.at_checkpoint = at_checkpoint(stage.plan, stage.done);
       if (has_diverged(t)) {
         run.status = StepStatus::diverged;
       } else {
@@ -130,6 +182,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
       h = checkpoint.h;
       run.steps = checkpoint.steps;
       run.time = checkpoint.time;
+      together.pause();
     }
     const std::optional<StepPlan> next = policy ? policy(run, state, stage.plan) : std::nullopt;
     if (!next) break;

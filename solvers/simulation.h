@@ -80,9 +80,14 @@ struct RunSoFar : SimulationResult {
 /// Where a run that carries out the plan begins.
 RunSoFar start_of(const StepPlan& plan);
 
-/// Sees every good state, the first included; returning false stops the run. After a divergence that was
-/// undone, time is back at the last checkpoint.
+/// Sees every good state that it has not declined (UnseenUntil), the first included; returning false stops
+/// the run. After a divergence that was undone, time is back at the last checkpoint.
 using Observer = std::function<bool(const RunSoFar& so_far, const State<Vector>& state)>;
+
+/// Asked before a step for the time before which the observer has no use for states [s]: steps of a
+/// linearized method may then be taken together. Checkpoints are seen all the same, and the first state after
+/// a divergence that was undone.
+using UnseenUntil = std::function<double()>;
 
 /// Asked after a failed step (so_far.status says why) with the state from which to go on. It may also change
 /// the system, as when new damping goes with the new step. The plan replaces the rest of the run after a
@@ -99,12 +104,13 @@ using StepPolicy = std::function<std::optional<StepPlan>(const SimulationResult&
 /// converged.
 SimulationResult simulate(System& system, Stepper& stepper, const StepPlan& plan, const EnergyWatch& watch,
                           State<Vector>& state, const Observer& observe = {}, const StepPolicy& policy = {},
-                          StepFilter* filter = nullptr);
+                          StepFilter* filter = nullptr, const UnseenUntil& unseen_until = {});
 
 /// The same from a checkpoint that an observer saw, with the state it saw there and all it carries: goes on
 /// to the same bits as if the run had not been interrupted, if system and policy are as they were.
 SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar run, const EnergyWatch& watch,
                                    State<Vector>& state, const Observer& observe = {},
-                                   const StepPolicy& policy = {}, StepFilter* filter = nullptr);
+                                   const StepPolicy& policy = {}, StepFilter* filter = nullptr,
+                                   const UnseenUntil& unseen_until = {});
 
 }  // namespace springstab

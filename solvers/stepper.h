@@ -5,6 +5,7 @@
 //     while (time < end && stepper->step(system, h, state) == StepStatus::done) time += h;
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 
@@ -13,6 +14,10 @@
 #include "solvers/system.h"
 
 namespace springstab {
+
+/// Whether the kinetic energy [J] of the state after so many steps (1, ...) raises no doubt; it may be off by
+/// rounding.
+using Plausible = std::function<bool(long step, double kinetic_energy)>;
 
 /// A method with its workspace; not to be shared between threads. The first step allocates, later ones do
 /// not.
@@ -23,6 +28,11 @@ class Stepper {
   virtual void start(System& system, double h, State<Vector>& state) = 0;
   /// Advances the state by h, or says why it did not and leaves the state as it was.
   virtual StepStatus step(System& system, double h, State<Vector>& state) = 0;
+  /// Takes several steps of h, `most` or fewer, together where the method has a way to, which is faster than
+  /// and to the same bits as one by one, and returns how many. None, and the state is as it was, where it has
+  /// not, or a state on the way is not finite or not plausible. The last is for the caller to look at.
+  virtual long take_steps(System& system, double h, long most, State<Vector>& state,
+                          const Plausible& plausible) = 0;
   /// After steps of h_old, before the first of h_new: what is carried serves that.
   virtual void change_step(System& system, double h_old, double h_new, State<Vector>& state) = 0;
   /// Drops what is kept from step to step (a linearization), as after going back to an earlier state. In a
@@ -58,6 +68,12 @@ class StepperOf final : public Stepper {
   }
   StepStatus step(System& system, double h, State<Vector>& state) override {
     return steps_.step(system, h, state);
+  }
+  long take_steps(System& system, double h, long most, State<Vector>& state,
+                  const Plausible& plausible) override {
+    if constexpr (requires(Steps & s) { s.take_steps(system, h, most, state, plausible); })
+      return steps_.take_steps(system, h, most, state, plausible);
+    return 0;
   }
   void change_step(System& system, double h_old, double h_new, State<Vector>& state) override {
     if (info_.when_h_changes == StepChange::restart) start(system, h_new, state);

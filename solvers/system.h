@@ -97,6 +97,8 @@ class System {
   virtual double potential_energy(const Vector& x) = 0;
 };
 
+class StepByRows;
+
 /// x'' = -K'x - D'v, without a constant force: the system whose step is the state transition matrix.
 class LinearSystem : public System {
  public:
@@ -119,6 +121,11 @@ class LinearSystem : public System {
       throw std::invalid_argument("this system does not tell the diagonal of its damping, expected part=all");
     return solve_shifted({1, h, 0}, rhs, out);
   }
+  /// How many steps of so many stages it does well to take in one pass over its matrices (step_by_rows.h);
+  /// less than 2 where it has no such way.
+  virtual long steps_at_once(int) const { return 1; }
+  /// Takes as many steps, to the same bits as one by one. Whether all were accepted; else the state is lost.
+  virtual bool take_steps(long, StepByRows&) { return false; }
   /// Itself, not a copy: it has to outlive its linearization.
   void linearize(const Vector&, const Vector&, Linearization<Vector>& linear) override {
     linear = Linearization<Vector>(Linearization<Vector>(), this);

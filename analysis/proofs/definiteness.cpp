@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/constants.h"
 #ifdef SPRINGSTAB_CHOLMOD
@@ -27,30 +28,45 @@ Eigen::VectorXd entries_in(const SparseMatrix& all, const SparseMatrix& a) {
   return entries;
 }
 
-}  // namespace
-
-DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, double loss) : loss_(loss) {
-  const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
-  const SparseMatrix mass = scaled(s.mass, d), stiffness = scaled(s.stiffness, d);
-  matrix_ = mass + stiffness;
-  mass_size_ = row_sums(mass);
-  stiffness_size_ = row_sums(stiffness);
-  damping_size_ = Eigen::VectorXd::Zero(s.size());
-  if (s.has_damping()) {
-    const SparseMatrix damping = scaled(s.damping, d);
-    matrix_ = SparseMatrix(matrix_ + damping);
-    damping_size_ = row_sums(damping);
-    damping_ = entries_in(matrix_, damping);
+// Whether `all`, which is compressed, has an entry wherever `a` has one.
+bool holds_pattern(const SparseMatrix& all, const SparseMatrix& a) {
+  if (!all.isCompressed()) return false;
+  for (Eigen::Index j = 0; j < a.cols(); ++j) {
+    SparseMatrix::InnerIterator entry(all, j);
+    for (SparseMatrix::InnerIterator own(a, j); own; ++own) {
+      while (entry && entry.row() < own.row()) ++entry;
+      if (!entry || entry.row() != own.row()) return false;
+    }
   }
-  mass_ = entries_in(matrix_, mass);
-  stiffness_ = entries_in(matrix_, stiffness);
-  diagonal_.resize(s.size());
-  sizes_.resize(s.size());
+  return true;
 }
 
-DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
+}  // namespace
+
+DefinitenessProof::DefinitenessProof(StructuralMatrices s, double loss)
+    : lumped_(is_diagonal(s.mass)), loss_(loss) {
+  const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
+  for (SparseMatrix* a : {&s.mass, &s.stiffness, &s.damping}) scale(*a, d);
+  mass_size_ = row_sums(s.mass);
+  stiffness_size_ = row_sums(s.stiffness);
+  damping_size_ = s.has_damping() ? row_sums(s.damping) : Eigen::VectorXd::Zero(s.size());
+  if (holds_pattern(s.stiffness, s.mass) && (!s.has_damping() || holds_pattern(s.stiffness, s.damping))) {
+    stiffness_ = s.stiffness.coeffs();
+    matrix_ = std::move(s.stiffness);
+  } else {
+    matrix_ = s.mass + s.stiffness;
+    if (s.has_damping()) matrix_ = SparseMatrix(matrix_ + s.damping);
+    stiffness_ = entries_in(matrix_, s.stiffness);
+  }
+  if (s.has_damping()) damping_ = entries_in(matrix_, s.damping);
+  mass_ = lumped_ ? Eigen::VectorXd(s.mass.diagonal()) : entries_in(matrix_, s.mass);
+  diagonal_.resize(matrix_.rows());
+  sizes_.resize(matrix_.rows());
+}
+
+DefinitenessProof::DefinitenessProof(StructuralMatrices s, std::shared_ptr<const Pieces> own,
                                      std::function<bool(bool)> all_of)
-    : DefinitenessProof(s) {
+    : DefinitenessProof(std::move(s)) {
   pieces_ = std::move(own);
   all_of_ = std::move(all_of);
 }
@@ -63,11 +79,13 @@ void DefinitenessProof::form(double c, double a, double b) {
     double size = 0;
     diagonal_[j] = 0;
     for (Eigen::Index p = matrix_.outerIndexPtr()[j]; p < matrix_.outerIndexPtr()[j + 1]; ++p) {
-      double v = c * mass_[p] - b * stiffness_[p];
+      const bool on_diagonal = matrix_.innerIndexPtr()[p] == j;
+      const double mass = !lumped_ ? mass_[p] : on_diagonal ? mass_[j] : 0;
+      double v = c * mass - b * stiffness_[p];
       if (damped) v -= a * damping_[p];
       value[p] = v;
       size += std::abs(v);
-      if (matrix_.innerIndexPtr()[p] == j) diagonal_[j] = v;
+      if (on_diagonal) diagonal_[j] = v;
     }
     sizes_[j] = size;
   }

@@ -18,16 +18,17 @@ class Pieces;
 
 class DefinitenessProof {
  public:
-  /// Copies what it needs, scaled so that the mass has a unit diagonal. Where SparseCholesky finds too many
+  /// Scales the matrices so that the mass has a unit diagonal, and keeps the pattern of all of them with the
+  /// entries of each: whoever moves them in has nothing of that twice. Where SparseCholesky finds too many
   /// unknowns the proof is by pieces, which overlap enough for σ I - K to be proved at a σ about `loss` k0
   /// above k0; without CHOLMOD only diagonally dominant matrices are proved there.
-  explicit DefinitenessProof(const StructuralMatrices& s, double loss = usual_loss);
+  explicit DefinitenessProof(StructuralMatrices s, double loss = usual_loss);
   static constexpr double usual_loss = 2e-3;
 
   /// Of a structure whose matrices are distributed: `s` are rows and columns of it, those that `own` pieces
   /// and their neighbours need (Pieces), and `all_of` says whether something is true of everybody, who is
   /// asked the same in the same order. What holds() says is of the whole structure.
-  DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
+  DefinitenessProof(StructuralMatrices s, std::shared_ptr<const Pieces> own,
                     std::function<bool(bool)> all_of);
 
   /// A DefinitenessTest.
@@ -50,9 +51,11 @@ class DefinitenessProof {
   void form(double c, double a, double b);
   bool all_of(bool mine) const { return all_of_ ? all_of_(mine) : mine; }
 
-  SparseMatrix matrix_;                         // of all three's pattern: what was formed last
-  Eigen::VectorXd diagonal_, sizes_;            // its diagonal and absolute row sums
-  Eigen::VectorXd mass_, damping_, stiffness_;  // an entry for each of the matrix's; empty without damping
+  SparseMatrix matrix_;                  // of all three's pattern: what was formed last
+  Eigen::VectorXd diagonal_, sizes_;     // its diagonal and absolute row sums
+  Eigen::VectorXd mass_;                 // an entry for each of the matrix's, or where M is diagonal, its
+  Eigen::VectorXd damping_, stiffness_;  // an entry for each of the matrix's; empty without damping
+  bool lumped_;                          // whether M is diagonal
   Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
   SparseCholesky cholesky_;
   double loss_;

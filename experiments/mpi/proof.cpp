@@ -134,8 +134,8 @@ DistributedProof::DistributedProof(const System& system, double loss) : system_(
   if (system.size > one_piece) {
     take_own_pieces(loss);
   } else {
-    const StructuralMatrices all = part_of(system, all_for_the_first(system));
-    if (rank() == 0) own_.emplace(all);
+    StructuralMatrices all = part_of(system, all_for_the_first(system));
+    if (rank() == 0) own_.emplace(std::move(all));
   }
 }
 
@@ -143,8 +143,9 @@ DistributedProof::DistributedProof(const System& system, double loss) : system_(
 void DistributedProof::take_own_pieces(double loss) {
   const int layers = Pieces::layers_for(loss), group = system_.unknowns_a_node;
   const OwnedIS rows = rows_around(system_, 2 * layers + 1);
-  const StructuralMatrices around = part_of(system_, rows);
+  StructuralMatrices around = part_of(system_, rows);
   const Graph graph = [&] {
+    if (system_.one_pattern) return graph_of(around.stiffness, group);
     SparseMatrix pattern = around.stiffness + around.mass;
     if (around.has_damping()) pattern = SparseMatrix(pattern + around.damping);
     return graph_of(pattern, group);
@@ -166,7 +167,7 @@ void DistributedProof::take_own_pieces(double loss) {
   auto pieces = std::make_shared<const Pieces>(graph, part, count, layers);
   pieces_ = pieces->count();
   MPI_Allreduce(MPI_IN_PLACE, &pieces_, 1, MPI_LONG, MPI_SUM, PETSC_COMM_WORLD);
-  own_.emplace(around, std::move(pieces), all_of);
+  own_.emplace(std::move(around), std::move(pieces), all_of);
 }
 
 bool DistributedProof::holds(double c, double a, double b) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "experiments/command/output.h"
 #include "experiments/command/programs.h"
@@ -169,8 +170,12 @@ Film::Film(const std::string& path, const Subject& subject, double duration)
 void Film::see(double t, const Vector& x) {
   if (!moves_) return;
   while (!frames_.empty() && t < frames_.back().first) frames_.pop_back();
-  if (t >= duration_ * static_cast<double>(frames_.size()) / film_frames * (1 - 1e-9))
-    frames_.emplace_back(t, x);
+  if (t >= unseen_until()) frames_.emplace_back(t, x);
+}
+
+double Film::unseen_until() const {
+  return moves_ ? duration_ * static_cast<double>(frames_.size()) / film_frames * (1 - 1e-9)
+                : std::numeric_limits<double>::infinity();
 }
 
 void Film::write(const Vector& end) const {

@@ -33,6 +33,8 @@ class Film {
   Film(const std::string& path, const Subject& subject, double duration);
   /// What lies after t is forgotten first: a divergence was undone.
   void see(double t, const Vector& x);
+  /// Before that time it has no use for states [s].
+  double unseen_until() const;
   /// Throws InputError if it cannot be written.
   void write(const Vector& end) const;
 

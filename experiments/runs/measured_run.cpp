@@ -36,13 +36,13 @@ std::string provenance() {
 
 MeasuredRun measured_run(System& system, std::string_view method, const StepPlan& plan,
                          const EnergyWatch& watch, const State<Vector>& start, const Observer& observe,
-                         const StepPolicy& policy, StepFilter* filter) {
+                         const StepPolicy& policy, StepFilter* filter, const UnseenUntil& unseen_until) {
   CountingSystem counted(system);
   const auto stepper = Method(method).stepper();
   MeasuredRun run;
   run.end = start;
   const double before = cpu_seconds();
-  run.result = simulate(counted, *stepper, plan, watch, run.end, observe, policy, filter);
+  run.result = simulate(counted, *stepper, plan, watch, run.end, observe, policy, filter, unseen_until);
   run.cpu_seconds = cpu_seconds() - before;
   run.counts = counted.counts();
   return run;

@@ -28,6 +28,7 @@ struct MeasuredRun {
 /// Carries out the plan from `start`, as simulate() does.
 MeasuredRun measured_run(System& system, std::string_view method, const StepPlan& plan,
                          const EnergyWatch& watch, const State<Vector>& start, const Observer& observe = {},
-                         const StepPolicy& policy = {}, StepFilter* filter = nullptr);
+                         const StepPolicy& policy = {}, StepFilter* filter = nullptr,
+                         const UnseenUntil& unseen_until = {});
 
 }  // namespace springstab

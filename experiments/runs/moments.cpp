@@ -22,7 +22,7 @@ MomentsOfRun moments_of(Subject& subject, StepChooser& chooser, const StepPlan& 
         progress.update(so_far.time / duration);
         return true;
       },
-      chooser.policy(), contact.get());
+      chooser.policy(), contact.get(), due);
   const bool done =
       run.result.status == StepStatus::done && moments.size() == static_cast<std::size_t>(count) + 1;
   return {std::move(moments), run.result.time, run.result.status, done};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 #include "experiments/runs/frames.h"
 #include "solvers/io/input_error.h"
@@ -73,6 +74,11 @@ void Recorder::record(double t, const State<Vector>& state) {
   if (t < next_time()) return;
   write(t, state);
   while (next_time() <= t && due_ <= options_.frames) ++due_;
+}
+
+double Recorder::unseen_until() const {
+  constexpr double forever = std::numeric_limits<double>::infinity();
+  return options_.output.empty() ? forever : keeps_last() ? -forever : next_time();
 }
 
 void Recorder::take_back_last() {

@@ -25,6 +25,8 @@ class Recorder {
 
   /// What lies after t is taken back first: a divergence was undone.
   void record(double t, const State<Vector>& state);
+  /// Before that time it has no use for states [s].
+  double unseen_until() const;
   /// With --keep-diverged, at the end of a run that has diverged: what it saw last, each step, up to 32 of
   /// them, in place of the frames of that time.
   void record_last();

@@ -1,16 +1,31 @@
 #include "solvers/linear/block_linear_system.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "solvers/linear/coupled_stages.h"
+#include "solvers/linear/wavefront.h"
+#include "solvers/step_by_rows.h"
 
 namespace springstab {
+namespace {
+
+constexpr double bytes_at_once = 17e6;  // that steps taken together are at: half of a last cache of 32 MB
+constexpr double vector_bytes = 200;    // of these beside the matrices, a row
+constexpr long most_at_once = 1000;     // steps, of a system that is within it as a whole
+
+}  // namespace
 
 BlockLinearSystem::BlockLinearSystem(std::vector<double> mass, RayleighDamping damping,
                                      SharedPattern stiffness, SharedPattern own_damping)
     : mass_(std::move(mass)), damping_(damping), stiffness_(std::move(stiffness)) {
   for (const double m : mass_) inverse_mass_.push_back(1 / m);
   if (own_damping) own_damping_.emplace(std::move(own_damping));
+}
+
+inline void BlockLinearSystem::set_acceleration(long i, const Eigen::Vector3d& force, const Vector& v,
+                                                Vector& a) const {
+  a.segment<3>(3 * i) = -inverse_mass_[i] * force - damping_.d0 * v.segment<3>(3 * i);
 }
 
 void BlockLinearSystem::acceleration(const Vector& x, const Vector& v, Vector& out) {
@@ -20,14 +35,13 @@ void BlockLinearSystem::acceleration(const Vector& x, const Vector& v, Vector& o
     w_ = x + damping_.alpha * v;
     in = &w_;
   }
-  const double d0 = damping_.d0;
   if (own_damping_) {
     product_.resize(size());
     own_damping_->multiply(v.data(), product_.data());
   }
   stiffness_.share_rows(in->data(), [&](long i, Eigen::Vector3d force) {
     if (own_damping_) force += product_.segment<3>(3 * i);
-    out.segment<3>(3 * i) = -inverse_mass_[i] * force - d0 * v.segment<3>(3 * i);
+    set_acceleration(i, force, v, out);
   });
 }
 
@@ -155,10 +169,70 @@ SolveReport BlockLinearSystem::solve_damping(DampingPart part, double h, const V
   return {};
 }
 
-double BlockLinearSystem::kinetic_energy(const Vector& v) {
+Wavefront BlockLinearSystem::wavefront() const {
+  long bandwidth = stiffness_.pattern()->bandwidth();
+  if (own_damping_) bandwidth = std::max<long>(bandwidth, own_damping_->pattern()->bandwidth());
+  return {stiffness_.rows(), bandwidth};
+}
+
+long BlockLinearSystem::steps_at_once(int stages) const {
+  const std::size_t matrices = stiffness_.bytes() + (own_damping_ ? own_damping_->bytes() : 0);
+  const double rows = stiffness_.rows(), row_bytes = static_cast<double>(matrices) / rows + vector_bytes;
+  if (row_bytes * rows <= bytes_at_once) return most_at_once;
+  return static_cast<long>(bytes_at_once / row_bytes) / wavefront().rows_apart() / stages;
+}
+
+bool BlockLinearSystem::take_steps(long steps, StepByRows& step) {
+  const int stages = step.stages();
+  bool accepted = true;
+  w_.resize(size());
+  if (own_damping_) product_.resize(size());
+  kinetic_.assign(static_cast<std::size_t>(steps), 0.0);
+  place(step, 0, {0, stiffness_.rows()});
+  wavefront().go(
+      steps * stages,
+      [&](long pass, const IndexRange& rows) {
+        const auto stage = static_cast<int>(pass % stages);
+        take_stage(step, stage, rows);
+        if (stage + 1 == stages) kinetic_[pass / stages] += kinetic_energy(step.v(0), rows);
+      },
+      [&](long pass) {
+        if ((pass + 1) % stages == 0) accepted = step.accept(kinetic_[pass / stages]) && accepted;
+      });
+  return accepted;
+}
+
+// Some rows, when those after them have gone through the stage.
+void BlockLinearSystem::take_stage(StepByRows& step, int stage, const IndexRange& rows) {
+  const Vector& v = step.v(stage);
+  Vector& a = step.acceleration(stage);
+  if (own_damping_)
+    own_damping_->multiply_rows(
+        v.data(), rows, [&](long i, const Eigen::Vector3d& force) { product_.segment<3>(3 * i) = force; });
+  const double* const in = damping_.alpha == 0 ? step.x(stage).data() : w_.data();
+  stiffness_.multiply_rows(in, rows, [&](long i, Eigen::Vector3d force) {
+    if (own_damping_) force += product_.segment<3>(3 * i);
+    set_acceleration(i, force, v, a);
+  });
+  step.advance(stage, {3 * rows.first, 3 * rows.last});
+  place(step, (stage + 1) % step.stages(), rows);
+}
+
+// What a stage multiplies K with.
+void BlockLinearSystem::place(const StepByRows& step, int stage, const IndexRange& rows) {
+  if (damping_.alpha == 0) return;
+  const auto part = entries({3 * rows.first, 3 * rows.last});
+  part(w_) = part(step.x(stage)) + damping_.alpha * part(step.v(stage));
+}
+
+double BlockLinearSystem::kinetic_energy(const Vector& v, const IndexRange& rows) const {
   double sum = 0;
-  for (std::size_t i = 0; i < mass_.size(); ++i) sum += mass_[i] * v.segment<3>(3 * i).squaredNorm();
+  for (long i = rows.first; i < rows.last; ++i) sum += mass_[i] * v.segment<3>(3 * i).squaredNorm();
   return sum / 2;
+}
+
+double BlockLinearSystem::kinetic_energy(const Vector& v) {
+  return kinetic_energy(v, {0, stiffness_.rows()});
 }
 
 double BlockLinearSystem::potential_energy(const Vector& x) {

@@ -14,6 +14,8 @@
 
 namespace springstab {
 
+class Wavefront;
+
 /// M x'' = -K x - (d0 M + alpha K + C) v for particles with three unknowns each. With Rayleigh damping alone
 /// an acceleration is one block product, K (x + alpha v). Solves by preconditioned conjugate gradients or by
 /// a Cholesky factorization, made anew at each solve.
@@ -42,10 +44,19 @@ class BlockLinearSystem final : public LinearSystem {
   SolveReport solve_coupled(const StageCoupling& coupling, const std::vector<Vector>& rhs,
                             std::vector<Vector>& out) override;
   SolveReport solve_damping(DampingPart part, double h, const Vector& rhs, Vector& out) override;
+  /// As many as have what they are at in the cache, all of them.
+  long steps_at_once(int stages) const override;
+  bool take_steps(long steps, StepByRows& step) override;
   double kinetic_energy(const Vector& v) override;
   double potential_energy(const Vector& x) override;
 
  private:
+  // a of row i, from (K (x + alpha v) + C v) of it.
+  void set_acceleration(long i, const Eigen::Vector3d& force, const Vector& v, Vector& a) const;
+  void take_stage(StepByRows& step, int stage, const IndexRange& rows);
+  void place(const StepByRows& step, int stage, const IndexRange& rows);
+  double kinetic_energy(const Vector& v, const IndexRange& rows) const;
+  Wavefront wavefront() const;
   SolveReport solve_by_cholesky(const Shift& shift, Vector& out);
   SolveReport solve_by_block_jacobi(const Shift& shift, Vector& out);
   SolveReport solve_by_block_ssor(const Shift& shift, Vector& out);
@@ -59,6 +70,7 @@ class BlockLinearSystem final : public LinearSystem {
   std::vector<double> inverse_blocks_;  // of the diagonal of H, 9 per particle, for block Jacobi
   BlockSsor ssor_;
   BlockCholesky cholesky_;
+  std::vector<double> kinetic_;  // of steps that are taken together
   Vector w_, product_, rhs_, transformed_rhs_, transformed_out_;
 };
 

@@ -24,6 +24,7 @@ BlockPattern::BlockPattern(int rows, std::span<const std::pair<int, int>> coupli
   for (const auto& [i, j] : entries) {
     column_.push_back(j);
     ++row_start_[i + 1];
+    bandwidth_ = std::max(bandwidth_, i - j);
   }
   for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
 }

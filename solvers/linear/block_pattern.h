@@ -28,6 +28,8 @@ class BlockPattern {
   long row_begin(int i) const { return row_start_[i]; }
   long diagonal(int i) const { return row_start_[i + 1] - 1; }
   int column(long place) const { return column_[place]; }
+  /// The largest i - j of a block (i, j).
+  int bandwidth() const { return bandwidth_; }
 
   std::size_t bytes() const { return sizeof(int) * column_.size() + sizeof(long) * row_start_.size(); }
 
@@ -35,6 +37,7 @@ class BlockPattern {
   friend class BlockSparseMatrix;  // its product walks the arrays
   std::vector<long> row_start_;
   std::vector<int> column_;
+  int bandwidth_ = 0;
 };
 
 using SharedPattern = std::shared_ptr<const BlockPattern>;

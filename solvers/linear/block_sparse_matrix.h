@@ -54,6 +54,13 @@ class BlockSparseMatrix {
   /// what is done with the product needs no further pass over memory.
   template <class Take>
   void multiply_rows(const double* in, const Take& take) const;
+  /// The same for some of the rows, after all that come after them: a product in parts, whose last part ends
+  /// with row 0. Row i reads from `in` the rows up to i alone. Parts of several products may alternate whose
+  /// rows are more than a bandwidth apart.
+  template <class Take>
+  void multiply_rows(const double* in, const IndexRange& rows, const Take& take) const {
+    multiply_rows<Above::within>(in, rows, 0, take);
+  }
   /// The same, where it is worth it with the rows divided among threads (solvers/team.h), which take at once.
   template <class Take>
   void share_rows(const double* in, const Take& take) const;

@@ -190,9 +190,15 @@ SparseMatrix lumped_mass(std::span<const double> mass) {
   return SparseMatrix(diagonal.asDiagonal());
 }
 
+void scale(SparseMatrix& a, const Eigen::VectorXd& d) {
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it) it.valueRef() = d[it.row()] * it.value() * d[j];
+}
+
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
-  const SparseMatrix rows = d.asDiagonal() * a;
-  return rows * d.asDiagonal();
+  SparseMatrix b = a;
+  scale(b, d);
+  return b;
 }
 
 bool is_diagonal(const SparseMatrix& a) {

@@ -51,7 +51,8 @@ StructuralMatrices prepare_nonsymmetric(const SparseMatrix& stiffness, const Spa
 /// M of particles with three unknowns each: diagonal; one mass per particle [kg].
 SparseMatrix lumped_mass(std::span<const double> mass);
 
-/// diag(d) A diag(d).
+/// diag(d) A diag(d), in place.
+void scale(SparseMatrix& a, const Eigen::VectorXd& d);
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d);
 
 /// Whether nothing is stored off the diagonal.

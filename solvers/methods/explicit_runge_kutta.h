@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "solvers/step_by_rows.h"
 #include "solvers/system.h"
 
 namespace springstab {
@@ -29,11 +30,39 @@ class ExplicitRungeKutta {
   template <Accelerating<V> System>
   StepStatus step(System& system, double h, State<V>& state) {
     evaluate_stages(system, h, state, std::make_index_sequence<tableau.stages>());
-    advance<tableau.b>(h, state, x_, v_new_);
+    advance<tableau.b>(h, state, x_, v_new_, all);
     return commit(state, x_, v_new_);
   }
 
+  /// The same step of this state by rows.
+  class ByRows : public StepByRows {
+   public:
+    ByRows(ExplicitRungeKutta& steps, double h, State<V>& state) : steps_(steps), h_(h), state_(state) {
+      for (std::size_t i = 0; i < tableau.stages; ++i) {
+        steps.a_[i].resize(state.x.size());
+        if (i > 0) steps.v_[i].resize(state.x.size());
+      }
+      if (tableau.stages > 1) steps.x_.resize(state.x.size());
+    }
+    static constexpr int all_stages = tableau.stages;
+    int stages() const final { return all_stages; }
+    const V& x(int stage) const final { return stage == 0 ? state_.x : steps_.x_; }
+    const V& v(int stage) const final { return stage == 0 ? state_.v : steps_.v_[stage]; }
+    V& acceleration(int stage) final { return steps_.a_[stage]; }
+    void advance(int stage, const IndexRange& unknowns) override {
+      steps_.template advance_after<0>(stage, h_, state_, entries(unknowns));
+    }
+
+   private:
+    ExplicitRungeKutta& steps_;
+    double h_;
+    State<V>& state_;
+  };
+
  private:
+  // All entries of a vector, as it is.
+  static constexpr auto all = [](auto& u) -> auto& { return u; };
+
   template <class System, std::size_t... i>
   void evaluate_stages(System& system, double h, const State<V>& state, std::index_sequence<i...>) {
     (evaluate_stage<i>(system, h, state), ...);
@@ -44,16 +73,32 @@ class ExplicitRungeKutta {
     if constexpr (i == 0) {
       system.acceleration(state.x, state.v, a_[0]);
     } else {
-      advance<tableau.a[i]>(h, state, x_, v_[i]);
+      advance<tableau.a[i]>(h, state, x_, v_[i], all);
       system.acceleration(x_, v_[i], a_[i]);
     }
   }
 
-  // x = state.x + h Σ w_j v_j and v = state.v + h Σ w_j a_j over the stages so far.
-  template <auto w>
-  void advance(double h, const State<V>& state, V& x, V& v) const {
-    x = state.x + weighted<w, next<w>(0)>(h, [&](auto j) -> const V& { return j == 0 ? state.v : v_[j]; });
-    v = state.v + weighted<w, next<w>(0)>(h, [&](auto j) -> const V& { return a_[j]; });
+  // From a stage, which is i or a later one, to the next or to the end of the step.
+  template <std::size_t i, class Part>
+  void advance_after(int stage, double h, State<V>& state, const Part& part) {
+    if constexpr (i + 1 == tableau.stages) {
+      advance<tableau.b>(h, state, state.x, state.v, part);
+    } else if (stage == i) {
+      advance<tableau.a[i + 1]>(h, state, x_, v_[i + 1], part);
+    } else {
+      advance_after<i + 1>(stage, h, state, part);
+    }
+  }
+
+  // x = state.x + h Σ w_j v_j and v = state.v + h Σ w_j a_j over the stages so far, in a part of the entries;
+  // x and v may be the state's own.
+  template <auto w, class Part>
+  void advance(double h, const State<V>& state, V& x, V& v, const Part& part) const {
+    part(x) = part(state.x) + weighted<w, next<w>(0)>(h, [&](auto j) -> decltype(auto) {
+                return part(j == 0 ? state.v : v_[j]);
+              });
+    part(v) =
+        part(state.v) + weighted<w, next<w>(0)>(h, [&](auto j) -> decltype(auto) { return part(a_[j]); });
   }
 
   // The first stage from j on whose weight is not zero.
@@ -65,7 +110,7 @@ class ExplicitRungeKutta {
 
   template <auto w, std::size_t j, class Slope>
   static auto weighted(double h, const Slope& slope) {
-    const auto& s = slope(std::integral_constant<std::size_t, j>());
+    auto&& s = slope(std::integral_constant<std::size_t, j>());
     if constexpr (next<w>(j + 1) == w.size()) {
       return (h * w[j]) * s;
     } else {

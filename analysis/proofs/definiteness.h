@@ -58,7 +58,7 @@ class DefinitenessProof {
   bool lumped_;                          // whether M is diagonal
   Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
   SparseCholesky cholesky_;
-  double loss_;
+  [[maybe_unused]] double loss_;  // where there is no CHOLMOD
   std::optional<bool> stiffness_is_semidefinite_;
   std::shared_ptr<const Pieces> pieces_;
   std::function<bool(bool)> all_of_;  // of a distributed structure

@@ -23,6 +23,12 @@ void BlockRows::append(const BlockSparseMatrix& part, const std::vector<long>& n
     end += blocks;
     start_.push_back(static_cast<PetscInt>(end));
   }
+  const auto rows = static_cast<double>(start_.size() - 1);
+  if (static_cast<std::size_t>(end) > column_.capacity() && static_cast<double>(expected_) > rows) {
+    const double all = static_cast<double>(end) * static_cast<double>(expected_) / rows;
+    column_.reserve(static_cast<std::size_t>(1.01 * all));
+    value_.reserve(static_cast<std::size_t>(9 * 1.01 * all));
+  }
   column_.resize(static_cast<std::size_t>(end));
   value_.resize(9 * static_cast<std::size_t>(end));
   for_each([&](int row, int column, long place, bool transposed) {

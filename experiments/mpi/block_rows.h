@@ -12,6 +12,9 @@ namespace springstab::mpi {
 
 class BlockRows {
  public:
+  /// How many rows there will be: from what the first ones take, memory is set aside for all.
+  void expect(long rows) { expected_ = rows; }
+
   /// Appends the rows of `part` whose particle has one of the `own` numbers, in their order there; number[i]
   /// is that of its row i, among all free particles. Each call takes up where the last one ended.
   void append(const BlockSparseMatrix& part, const std::vector<long>& number, const IndexRange& own);
@@ -25,6 +28,7 @@ class BlockRows {
  private:
   std::vector<PetscInt> start_{0}, column_;
   std::vector<double> value_;  // 9 a block, row by row
+  long expected_ = 0;
 };
 
 }  // namespace springstab::mpi

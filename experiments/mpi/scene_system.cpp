@@ -15,7 +15,7 @@
 namespace springstab::mpi {
 namespace {
 
-constexpr long particles_a_strip = 200'000;
+constexpr long particles_a_strip = 40'000;
 constexpr long reach = 2;  // of an element, in rows or columns
 
 // The rows of a rank: of K and C, and what its particles weigh.
@@ -175,6 +175,9 @@ System grid_system(const SceneDescription& description) {
     model = sample.damping();
     size = whole_size(*sample.scene_size(), grid, description.scale);
     const GridLayout::Box box = layout.box(rank());
+    const IndexRange own = layout.numbers(rank());
+    rows.stiffness.expect(own.last - own.first);
+    rows.damping.expect(own.last - own.first);
     const long height = std::max(1L, particles_a_strip / std::max(1L, box.width()));
     for (long top = box.rows.first; top < box.rows.last; top += height)
       append_strip(description, layout, {{top, std::min(top + height, box.rows.last)}, box.columns}, rows);

@@ -33,11 +33,12 @@ class Wavefront {
     const long blocks = (rows_ + block_ - 1) / block_;
     for (long tick = 0; tick < blocks + (passes - 1) * lag_; ++tick) {
       const long first = std::max(0L, tick - blocks + lag_) / lag_, last = std::min(passes, tick / lag_ + 1);
+      if (first == last) continue;  // one has been through few blocks before the next may begin
       share(static_cast<int>(last - first), [&](int p) {
         const long pass = first + p, begin = (blocks - 1 - (tick - pass * lag_)) * block_;
         work(pass, IndexRange{begin, std::min(begin + block_, rows_)});
       });
-      if (first < last && tick - first * lag_ == blocks - 1) done(first);
+      if (tick - first * lag_ == blocks - 1) done(first);
     }
   }
 

@@ -114,8 +114,9 @@ void ReportPage::add_scene() {
   if (!subject.scene()) facts.emplace_back("entries of K", std::to_string(s.stiffness.nonZeros()));
   facts.emplace_back("damping", damping_text());
   if (subject.contact())
-    facts.emplace_back(
-        "contact", text("%zu obstacles, which the picture leaves out", subject.contact()->obstacles.size()));
+    facts.emplace_back("contact", text("%zu obstacles%s",
+                                       subject.contact()->obstacles.size() + subject.contact()->meshes.size(),
+                                       subject.contact()->self ? ", and the cloth itself" : ""));
   page_.facts(facts);
 }
 

@@ -19,7 +19,7 @@ int run_limits(const CommonOptions& common, const LimitsOptions& options) {
   print_size_warning(subject);
   if (!options.picture.empty()) expect_drawable(options.picture, subject, false);
   LimitsAnswer answer(common, options, methods, subject, !common.json);
-  if (!options.picture.empty()) write_picture(options.picture, subject, answer.start().x);
+  if (!options.picture.empty()) write_picture(options.picture, subject, 0, answer.start().x);
   if (common.json) {
     print_json(answer.json());
   } else {

@@ -215,7 +215,7 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   }
   if (!course.stopped) {  // a full disk shows before the report
     recorder->flush();
-    film.write(course.end.x);
+    film.write(course.result.time, course.end.x);
   }
 
   if (common.json) {

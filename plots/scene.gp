@@ -1,6 +1,7 @@
 # A scene as a surface with its mesh, y up, axes to one scale; once for each frame of a motion.
 # Needs: $faces (corners x,z,y of a face, closed, two blank lines after it), $pins, $stiff (the same) where
-# has_pins, has_stiff; edges (whether to draw the faces' edges), x_mid, z_mid, y_mid, half (of the cube that is seen),
+# has_pins, has_stiff; $planes, $obstacles (as $faces) and how large their faces are, `behind`, where has_obstacles; edges
+# (whether to draw the faces' edges), x_mid, z_mid, y_mid, half (of the cube that is seen),
 # kind: page (PNG without background, for light and dark pages), white (PNG) or gif; first (1; the script sets it to 0).
 # Draws to stdout.
 
@@ -38,7 +39,19 @@ if (edges) {
     set pm3d depthorder
 }
 set multiplot
-splot $faces using 1:2:3 with polygons fillcolor rgb '#8fbbdc'
+if (has_obstacles) {
+    # What lies on an obstacle is not to be hidden by a face of it that reaches further to the front: its faces count as
+    # further away than they are, along the line of sight, so that they are seen where they are; and those of planes
+    # twice as far, as other obstacles stand on them.
+    x_deep = -behind * sin(62 * pi / 180) * sin(30 * pi / 180)
+    y_deep = behind * sin(62 * pi / 180) * cos(30 * pi / 180)
+    z_deep = -behind * cos(62 * pi / 180)
+    splot $planes using ($1 + 2 * x_deep):($2 + 2 * y_deep):($3 + 2 * z_deep) with polygons fillcolor rgb '#e8d3a8', \
+        $obstacles using ($1 + x_deep):($2 + y_deep):($3 + z_deep) with polygons fillcolor rgb '#e8d3a8', \
+        $faces using 1:2:3 with polygons fillcolor rgb '#8fbbdc'
+} else {
+    splot $faces using 1:2:3 with polygons fillcolor rgb '#8fbbdc'
+}
 # In front of all faces, which gnuplot draws last in a plot.
 if (has_stiff) {
     splot $stiff using 1:2:3 with lines lw 4 lc rgb '#d55e00'

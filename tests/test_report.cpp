@@ -5,10 +5,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "experiments/report/obstacle_faces.h"
 #include "experiments/report/page.h"
 #include "experiments/report/svg_figure.h"
 #include "tests/command.h"
@@ -302,6 +304,48 @@ BOOST_AUTO_TEST_CASE(a_quick_look_is_a_picture_of_the_run) {
     BOOST_TEST(springstab::test::lines(refused.err) == 1, refused.err);
   }
   BOOST_TEST(!fs::exists(folder() / "k.png"));
+}
+
+// What is drawn of obstacles lies on them where they are at that time, is all of a ball and of a mesh in
+// sight (by its area, of a ball to the second order in the faces' size), of a plane what is in sight, and
+// small.
+BOOST_AUTO_TEST_CASE(obstacles_are_drawn_where_they_are) {
+  using Eigen::Vector3d;
+  const double size = 0.05, t = 0.7, radius = 0.4;
+  const Vector3d u(0.3, -0.2, 0.1), normal = Vector3d(0.1, 1, -0.2).normalized();
+  const Eigen::AlignedBox3d sight(Vector3d(-1, -1, -1), Vector3d(1, 1, 1));
+  const auto drawn = [&](const springstab::Contact& contact, double& area, double& longest) {
+    const springstab::PlacedFaces all = springstab::obstacle_faces(contact, t, sight, size);
+    area = longest = 0;
+    for (const std::vector<int>& face : all.faces)
+      for (std::size_t k = 1; k < face.size(); ++k) {
+        const Vector3d &a = all.places[face[0]], &b = all.places[face[k - 1]], &c = all.places[face[k]];
+        area += (b - a).cross(c - a).norm() / 2;
+        longest = std::max(longest, (c - b).norm());
+      }
+    BOOST_TEST(longest <= std::numbers::sqrt2 * size);
+    BOOST_TEST(longest > size / 3);
+    return all.places;
+  };
+  double area, longest;
+  springstab::Contact ball, plane, mesh;
+  ball.obstacles = {{springstab::Sphere{{0.1, 0, 0}, radius}, u}};
+  for (const Vector3d& at : drawn(ball, area, longest))
+    BOOST_TEST(std::abs(springstab::gap_at(ball.obstacles[0], at, t).gap) < 1e-14);
+  const double whole = 4 * std::numbers::pi * radius * radius, bends = size * size / (radius * radius);
+  BOOST_TEST(area < whole);
+  BOOST_TEST(area > whole * (1 - bends));
+  plane.obstacles = {{springstab::Plane{{0.2, 0.1, 0.3}, normal}, u}};
+  for (const Vector3d& at : drawn(plane, area, longest)) {
+    BOOST_TEST(std::abs(springstab::gap_at(plane.obstacles[0], at, t).gap) < 1e-14);
+    BOOST_TEST(sight.exteriorDistance(at) <= size);
+  }
+  // It cuts the cube across, above a square of 2 × 2, or to within a face of its border.
+  BOOST_TEST(std::abs(area * normal.y() - 4) < 8 * size);
+  mesh.meshes = {
+      {{{0, 0, 0}, {0.5, 0, 0}, {0, 0.3, 0.4}, {9, 9, 9}, {9, 8, 9}, {8, 9, 9}}, {{0, 1, 2}, {3, 4, 5}}, u}};
+  drawn(mesh, area, longest);
+  BOOST_TEST(std::abs(area - 0.125) < 1e-14);
 }
 
 BOOST_AUTO_TEST_CASE(text_is_escaped_and_pictures_are_made_fit) {

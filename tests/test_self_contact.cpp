@@ -324,6 +324,32 @@ BOOST_AUTO_TEST_CASE(no_step_of_any_method_ends_in_an_intersection, *boost::unit
       }
 }
 
+// Until it has come to rest in layers, of which the floor bears all: lower than a third of the strip's
+// length, and shorter than three quarters of it.
+BOOST_AUTO_TEST_CASE(a_strip_that_folds_comes_to_lie_on_the_floor_without_an_intersection,
+                     *boost::unit_test::label("slow")) {
+  if (without_embree()) return;
+  Surfaces scene(folding());
+  const double h = 8e-5, length = 13 * 0.03;
+  const SurfaceRun done = run(scene, "symplectic-euler", h, 20'000);
+  BOOST_TEST((done.result.status == StepStatus::done));
+  BOOST_TEST(done.intersections == 0);
+  BOOST_TEST(done.nearest > nearest_allowed);
+  BOOST_TEST(done.counts.surfaces->zones == 0);
+  const double mass = scene.subject.scene()->total_free_mass();
+  BOOST_TEST(scene.subject.system().kinetic_energy(done.end.v) < 1e-4 * mass * 9.81 * length);
+  const Vector3d up = Vector3d(0, 0.1, 1).normalized(), along = Vector3d(0, 1, -0.1).normalized();
+  double highest = 0, front = -HUGE_VAL, back = HUGE_VAL;
+  for (const Vector3d& place : scene.subject.vertices(done.end.x)) {
+    highest = std::max(highest, up.dot(place - Vector3d(0, 0, -0.02)));
+    front = std::max(front, along.dot(place));
+    back = std::min(back, along.dot(place));
+  }
+  BOOST_TEST_MESSAGE("it lies " << highest << " m high and " << front - back << " m long");
+  BOOST_TEST(highest < length / 3);
+  BOOST_TEST(front - back < 0.75 * length);
+}
+
 // Two strips without gravity, one thrown onto the other: every impulse is one on either side.
 BOOST_AUTO_TEST_CASE(contact_of_a_cloth_with_itself_keeps_its_momentum_and_takes_kinetic_energy) {
   if (without_embree()) return;

@@ -10,6 +10,7 @@
 #include "experiments/command/programs.h"
 #include "experiments/command/shared_options.h"
 #include "experiments/region.h"
+#include "experiments/report/obstacle_faces.h"
 #include "experiments/studies/gnuplot.h"
 #include "solvers/io/input_error.h"
 
@@ -86,26 +87,66 @@ std::string corners_of(const Faces& faces, const Places& at) {
   return rows;
 }
 
+struct Frame {
+  double time;  // [s]
+  Places at;
+};
+
+constexpr double faces_a_side = 24;  // of obstacles, along the cube that is seen
+
+// The cube that is seen: around the cloth, and as far again for balls and meshes.
+struct Sight {
+  Eigen::Vector3d middle;
+  double half;
+
+  Sight(const Subject& subject, const std::vector<Frame>& frames) {
+    Eigen::AlignedBox3d box;
+    for (const Frame& frame : frames)
+      for (const Eigen::Vector3d& at : frame.at)
+        if (at.allFinite()) box.extend(at);
+    if (subject.contact()) {
+      const Eigen::Array3d more = Eigen::Array3d::Constant(box.sizes().maxCoeff());
+      const Eigen::AlignedBox3d most(box.min().array() - more, box.max().array() + more);
+      for (const Frame& frame : frames)
+        box.extend(box_of_obstacles(*subject.contact(), frame.time).intersection(most));
+    }
+    middle = box.center();
+    half = std::max(box.sizes().maxCoeff() / 2, 1e-9);
+  }
+  Eigen::AlignedBox3d cube() const { return {middle.array() - half, middle.array() + half}; }
+};
+
 // How all frames are seen: `kind` is page, white or gif.
-std::string view_of(const std::vector<Places>& frames, const std::string& kind, bool edges) {
-  Eigen::AlignedBox3d box;
-  for (const Places& frame : frames)
-    for (const Eigen::Vector3d& at : frame)
-      if (at.allFinite()) box.extend(at);
-  const Eigen::Vector3d middle = box.center();
-  return setting("x_mid", middle.x()) + setting("y_mid", middle.y()) + setting("z_mid", middle.z()) +
-         setting("half", std::max(box.sizes().maxCoeff() / 2, 1e-9)) + setting("edges", edges) + "kind='" +
-         kind + "'\nfirst=1\n";
+std::string view_of(const Sight& sight, const std::string& kind, bool edges) {
+  return setting("x_mid", sight.middle.x()) + setting("y_mid", sight.middle.y()) +
+         setting("z_mid", sight.middle.z()) + setting("half", sight.half) + setting("edges", edges) +
+         "kind='" + kind + "'\nfirst=1\n";
+}
+
+std::string obstacles_of(const Subject& subject, double t, const Sight& sight) {
+  if (!subject.contact()) return setting("has_obstacles", 0);
+  const double size = 2 * sight.half / faces_a_side;
+  Contact planes, others = *subject.contact();
+  std::ranges::copy_if(others.obstacles, std::back_inserter(planes.obstacles), is_flat);
+  std::erase_if(others.obstacles, is_flat);
+  std::string lines = setting("has_obstacles", 1) + setting("behind", size);
+  for (const auto& [name, some] : {std::pair{"planes", planes}, {"obstacles", others}}) {
+    const PlacedFaces all = obstacle_faces(some, t, sight.cube(), size);
+    lines += gnuplot_data(name, corners_of(all.faces, all.places));
+  }
+  return lines;
 }
 
 constexpr std::size_t most_with_edges = 20'000;  // faces
 
-std::string drawn_frames(const Subject& subject, const std::vector<Places>& frames, const std::string& kind) {
+std::string drawn_frames(const Subject& subject, const std::vector<Frame>& frames, const std::string& kind) {
   const std::string plots = plots_folder();
+  const Sight sight(subject, frames);
   std::string lines =
-      view_of(frames, kind, subject.faces().size() < most_with_edges) + "has_pins=0\nhas_stiff=0\n";
-  for (const Places& frame : frames)
-    lines += gnuplot_data("faces", corners_of(subject.faces(), frame)) + load(plots, "scene.gp");
+      view_of(sight, kind, subject.faces().size() < most_with_edges) + "has_pins=0\nhas_stiff=0\n";
+  for (const Frame& frame : frames)
+    lines += gnuplot_data("faces", corners_of(subject.faces(), frame.at)) +
+             obstacles_of(subject, frame.time, sight) + load(plots, "scene.gp");
   return drawn(lines);
 }
 
@@ -141,10 +182,11 @@ std::string scene_picture(const std::string& plots, const Subject& subject, cons
     stiff += "\n\n";  // else gnuplot joins the lines to a net
   }
   const std::string pins = marks_of(subject, at);
+  const Sight sight(subject, {{0, at}});
   return drawn(gnuplot_data("faces", corners_of(faces, at)) + gnuplot_data("pins", pins) +
                gnuplot_data("stiff", stiff) + setting("has_pins", !pins.empty()) +
-               setting("has_stiff", !stiff.empty()) + view_of({at}, "page", faces.size() < most_with_edges) +
-               load(plots, "scene.gp"));
+               setting("has_stiff", !stiff.empty()) + obstacles_of(subject, 0, sight) +
+               view_of(sight, "page", faces.size() < most_with_edges) + load(plots, "scene.gp"));
 }
 
 void expect_drawable(const std::string& path, const Subject& subject, bool motion) {
@@ -160,8 +202,8 @@ void expect_drawable(const std::string& path, const Subject& subject, bool motio
     const OutputFile would_be(path);  // can it be written? Not committed, it is gone
 }
 
-void write_picture(const std::string& path, const Subject& subject, const Vector& x) {
-  write_drawing(path, drawn_frames(subject, {subject.vertices(x)}, "white"));
+void write_picture(const std::string& path, const Subject& subject, double t, const Vector& x) {
+  write_drawing(path, drawn_frames(subject, {{t, subject.vertices(x)}}, "white"));
 }
 
 Film::Film(const std::string& path, const Subject& subject, double duration)
@@ -178,11 +220,11 @@ double Film::unseen_until() const {
                 : std::numeric_limits<double>::infinity();
 }
 
-void Film::write(const Vector& end) const {
+void Film::write(double t, const Vector& end) const {
   if (path_.empty()) return;
-  if (!moves_) return write_picture(path_, subject_, end);
-  std::vector<Places> frames;
-  for (const auto& [time, x] : frames_) frames.push_back(subject_.vertices(x));
+  if (!moves_) return write_picture(path_, subject_, t, end);
+  std::vector<Frame> frames;
+  for (const auto& [time, x] : frames_) frames.push_back({time, subject_.vertices(x)});
   write_drawing(path_, drawn_frames(subject_, frames, "gif"));
 }
 

@@ -14,16 +14,17 @@
 
 namespace springstab {
 
-/// The scene in a state as a PNG without background, pinned particles and the particles of the stiffest
-/// elements marked. Empty where there are no faces or too many to draw.
+/// The scene in a state at its start as a PNG without background, with the obstacles there are; pinned
+/// particles and the particles of the stiffest elements are marked. Empty where there are no faces or too
+/// many to draw.
 std::string scene_picture(const std::string& plots, const Subject& subject, const Vector& x,
                           const std::vector<std::vector<long>>& stiffest);
 
 /// Throws InputError unless there are gnuplot, its scripts and faces, and `path` ends in .png, or where a
 /// `motion` is to be seen in .gif.
 void expect_drawable(const std::string& path, const Subject& subject, bool motion);
-/// The scene in a state on white, into a PNG file.
-void write_picture(const std::string& path, const Subject& subject, const Vector& x);
+/// The scene in a state at the time t [s], with the obstacles then, on white, into a PNG file.
+void write_picture(const std::string& path, const Subject& subject, double t, const Vector& x);
 
 /// A quick look at a run of `duration` [s]: its end as PNG, or its motion as GIF. Nothing where `path` is
 /// empty.
@@ -36,7 +37,7 @@ class Film {
   /// Before that time it has no use for states [s].
   double unseen_until() const;
   /// Throws InputError if it cannot be written.
-  void write(const Vector& end) const;
+  void write(double t, const Vector& end) const;
 
  private:
   std::string path_;

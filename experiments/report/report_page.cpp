@@ -14,7 +14,7 @@ namespace {
 
 std::string contact_text(const Contact& contact) {
   const std::size_t obstacles = contact.obstacles.size() + contact.meshes.size();
-  return text("with %zu obstacle%s%s, which the picture leaves out", obstacles, obstacles == 1 ? "" : "s",
+  return text("with %zu obstacle%s%s", obstacles, obstacles == 1 ? "" : "s",
               contact.self ? " and of the cloth with itself" : "");
 }
 

@@ -1,9 +1,10 @@
-// Pairs of parts, each with a direction in which they were apart, found in any order and then sorted, by
-// counting: in time proportional to their number.
+// Pairs of parts, each with a direction in which they were apart and until when that is clear without a look,
+// found in any order and then sorted, by counting: in time proportional to their number.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <limits>
 #include <vector>
 
 namespace springstab {
@@ -17,14 +18,23 @@ class PairList {
  public:
   void clear() { pairs_.clear(); }
   void add(int i, int j, const Eigen::Vector3d& normal) { pairs_.push_back({{i, j}, normal.cast<float>()}); }
-  /// By the first number, then by the second; both are below `count`.
+  std::size_t size() const { return pairs_.size(); }
+  template <class Is>
+  void remove_if(const Is& is) {
+    std::erase_if(pairs_, is);
+  }
+  /// By the first number, then by the second; both are below `count`. None is clear then.
   void sort(int count) {
     sort_by(1, count);
     sort_by(0, count);
+    clear_until_.assign(pairs_.size(), -std::numeric_limits<float>::infinity());
   }
-  auto begin() { return pairs_.begin(); }
-  auto end() { return pairs_.end(); }
-  std::size_t size() const { return pairs_.size(); }
+  /// Calls visit(pair, clear_until) for those that are not clear until after `now`.
+  template <class Visit>
+  void for_each_from(float now, const Visit& visit) {
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      if (!(clear_until_[i] > now)) visit(pairs_[i], clear_until_[i]);
+  }
 
  private:
   // Those with one number stay in the order they have.
@@ -38,6 +48,7 @@ class PairList {
   }
 
   std::vector<KeptPair> pairs_, sorted_;
+  std::vector<float> clear_until_;  // of each pair
   std::vector<long> begins_;
 };
 

@@ -177,7 +177,7 @@ SurfaceImpulses::Way SurfaceImpulses::find_way(double t, double h, Unless unless
     if (!bent) wanted_ = v_;
     bent = true;
     v_ = wanted_;
-    has_settled = solve(contact_.friction);
+    has_settled = impulses_.solve(active_, contact_.friction, v_);
     search_.advance(x_, v_, h, t + h, y_);
   }
   return move_as_one(t, h) ? Way::bent : Way::none;
@@ -215,24 +215,6 @@ bool SurfaceImpulses::take_over(double h, int pass) {
   std::stable_sort(active_.begin(), active_.end(), is_before);
   active_.erase(std::unique(active_.begin(), active_.end(), is_same), active_.end());
   return true;
-}
-
-// From the velocity wanted. Impulses with friction that together would give energy are taken back, and those
-// without, which cannot, remain. Whether it has settled.
-bool SurfaceImpulses::solve(double friction) {
-  const bool has_settled = impulses_.solve(active_, friction, v_);
-  if (friction == 0 || relative_work(wanted_) <= 0) return has_settled;
-  v_ = wanted_;
-  impulses_.solve(active_, 0, v_);
-  return false;
-}
-
-// Of all impulses, on the kinetic energy relative to what cannot be moved [J].
-double SurfaceImpulses::relative_work(const Places& v_before) const {
-  double work = 0;
-  for (const PairContact& c : active_)
-    if (c.r > 0) work += (c.r * c.normal + c.q).dot(parting(c, v_before) + parting(c, v_)) / 2;
-  return work;
 }
 
 bool SurfaceImpulses::move_as_one(double t, double h) {

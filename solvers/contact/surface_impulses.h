@@ -41,9 +41,7 @@ class SurfaceImpulses final : public ContactFilter {
   Way push(double t, double h, const State<Vector>& before, const Vector& v);
   Way find_way(double t, double h, Unless unless);
   bool take_over(double h, int pass);
-  bool solve(double friction);
   bool move_as_one(double t, double h);
-  double relative_work(const Places& v_before) const;
   double count_work();
 
   Contact contact_;

@@ -8,9 +8,10 @@
 //
 // Places x of all particles, in meters, are one list: particles 0 … free_count - 1 are free to move, those
 // after them are not: pinned ones, and the vertices of obstacles. Pairs that share a particle, and pairs
-// without a free one, are left out. Pairs that may come closer than `reach` are kept while nothing has moved
-// more than half the skin, and are found again by a tree of boxes (box_tree.h) otherwise. What is returned
-// does not depend on what was kept, and is sorted: it is a function of the places alone.
+// without a free one, are left out. Pairs that may come closer than `reach` are kept while nothing is more
+// than half the skin from where it was to be (kept_pairs.h), and are found again by a tree of boxes
+// otherwise. What is returned does not depend on what was kept, and is sorted: it is a function of the places
+// alone.
 #pragma once
 
 #include <Eigen/Core>
@@ -42,8 +43,10 @@ struct PairDistances {
 
 /// In all calls together.
 struct PairCounts {
-  long tested = 0;    // pairs of a vertex and a face or of two edges, kept ones, in every call
+  long kept = 0;      // pairs of a vertex and a face or of two edges, in every call
+  long tested = 0;    // those of them of which it was not clear that they are apart
   long rebuilds = 0;  // of what is kept
+  long strays = 0;    // times that a few left their ways, and what they are near to was found anew
 };
 
 /// Needs has_embree() (box_pairs.h): the constructors throw std::runtime_error with `embree_is_missing` else.

@@ -56,7 +56,8 @@ void detect(benchmark::State& state, bool folded) {
   const auto each = static_cast<double>(steps);
   state.counters["ms/step"] = 1e3 * seconds / each;
   state.counters["triangles"] = 2. * (n - 1) * (n - 1);
-  state.counters["kept"] = static_cast<double>(pairs.counts().tested) / 2 / each;
+  state.counters["kept"] = static_cast<double>(pairs.counts().kept) / 2 / each;
+  state.counters["tested"] = static_cast<double>(pairs.counts().tested) / 2 / each;
   state.counters["near"] = static_cast<double>(near) / each;
   state.counters["steps/rebuild"] = each / static_cast<double>(pairs.counts().rebuilds);
 }

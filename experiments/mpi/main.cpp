@@ -1,5 +1,7 @@
 // springstab-mpi: `springstab limits` on many processes, as `mpirun -np N springstab-mpi limits …`. Words of
 // one dash are PETSc's and SLEPc's options, with their values.
+#include <malloc.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -46,6 +48,17 @@ springstab::Subcommand limits() {
   return limits;
 }
 
+// What MPI's libraries forbid, lest memory that a network card knows moves: matrices that are done with would
+// stay beside those that follow.
+void give_memory_back() {
+#ifdef __GLIBC__
+  constexpr int large = 1 << 20;  // [bytes]
+  mallopt(M_MMAP_MAX, 1 << 16);
+  mallopt(M_MMAP_THRESHOLD, large);
+  mallopt(M_TRIM_THRESHOLD, large);
+#endif
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -54,6 +67,7 @@ int main(int argc, char** argv) {
   words.petscs.push_back(nullptr);
   char** petscs = words.petscs.data();
   if (SlepcInitialize(&count, &petscs, nullptr, nullptr) != 0) return springstab::internal_error;
+  give_memory_back();
   springstab::mpi::keep_petsc_errors();
   if (springstab::mpi::rank() > 0) {  // one speaks for all
     std::cout.rdbuf(nullptr);

@@ -26,12 +26,18 @@ double median(std::vector<double>& times) {
   return times[times.size() / 2];
 }
 
+// Of several threads what the clock says.
+double now() {
+  if (loop_threads() == 1) return thread_seconds();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 template <class Work>
 double seconds(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = now();
   work();
   benchmark::ClobberMemory();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return now() - start;
 }
 
 void measure(benchmark::State& state, const std::string& method) {

@@ -24,7 +24,7 @@ set xrange [x_mid - half:x_mid + half]
 set yrange [z_mid - half:z_mid + half]
 set zrange [y_mid - half:y_mid + half]
 
-set view 62, 30, 1.5
+set view 62, 30, has_obstacles ? 1.2 : 1.5  # obstacles below fill the height, too
 set view equal xyz
 set xyplane at y_mid - half
 unset border

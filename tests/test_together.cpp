@@ -276,7 +276,7 @@ BOOST_AUTO_TEST_CASE(a_divergence_on_the_way_is_told_of_the_same_step) {
   BOOST_TEST(places.size() > 4U);
 }
 
-BOOST_AUTO_TEST_CASE(a_run_that_is_undone_and_saved_ends_alike) {
+BOOST_AUTO_TEST_CASE(a_run_that_is_undone_and_saved_ends_alike, *boost::unit_test::label("slow")) {
   const std::pair<const char*, double> too_long[] = {{methods[0], 3.2e-3}, {methods[1], 6.4e-3}};
   for (const auto& [method, h] : too_long)
     for (const Case& c : {cases[1], cases[4]}) {

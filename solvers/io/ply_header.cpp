@@ -109,6 +109,8 @@ double PlyNumbers::next(NumberType type, const std::string& name) {
     if (!is_real(type)) return static_cast<double>(lines_.at().integer(word));
     return is_not_finite(word) ? std::numeric_limits<double>::quiet_NaN() : lines_.at().real(word);
   }
+  if (bytes_of(type) > binary_->bytes_left())
+    binary_->at().fail("the file ends, expected " + springstab::quoted(name));
   return binary_->number(type, name);
 }
 

@@ -310,7 +310,7 @@ BOOST_AUTO_TEST_CASE(a_malformed_ply_file_is_refused_with_its_line_or_its_byte) 
   wrong = binary;
   wrong.replace(faces + 1, 4, bytes(-1));
   check_refused(parse_ply_file, wrong, at(faces), "the face has vertex -1, which is not there");
-  const std::size_t second = faces + 1 + 4 * static_cast<unsigned char>(binary[faces]);
+  const std::size_t second = faces + 1 + 4 * static_cast<unsigned char>(binary[faces]) + 2;
   wrong = replaced(binary.substr(0, second), "vertex_indices",
                    "vertex\x7f"
                    "indices");

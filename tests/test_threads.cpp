@@ -17,21 +17,14 @@
 #include "solvers/scene/tet_solid.h"
 #include "solvers/scene/triangle_cloth.h"
 #include "solvers/team.h"
+#include "tests/loop_threads.h"
 
 BOOST_AUTO_TEST_SUITE(threads)
 
 using namespace springstab;
+using springstab::test::LoopThreads;
 
 namespace {
-
-/// As many while it lives.
-class LoopThreads {
- public:
-  explicit LoopThreads(int count) { set_loop_threads(count); }
-  ~LoopThreads() { set_loop_threads(1); }
-  LoopThreads(const LoopThreads&) = delete;
-  LoopThreads& operator=(const LoopThreads&) = delete;
-};
 
 using Random = std::mt19937_64;
 

@@ -18,25 +18,18 @@
 #include "solvers/step_by_rows.h"
 #include "solvers/team.h"
 #include "tests/dense.h"
+#include "tests/loop_threads.h"
 
 BOOST_AUTO_TEST_SUITE(together)
 
 using namespace springstab;
+using springstab::test::LoopThreads;
 using springstab::test::random_vector;
 
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* methods[] = {"linearized-explicit-euler", "linearized-rk4"};
-
-/// As many while it lives.
-class LoopThreads {
- public:
-  explicit LoopThreads(int count) { set_loop_threads(count); }
-  ~LoopThreads() { set_loop_threads(1); }
-  LoopThreads(const LoopThreads&) = delete;
-  LoopThreads& operator=(const LoopThreads&) = delete;
-};
 
 bool same_bits(const Vector& a, const Vector& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), sizeof(double) * a.size()) == 0;

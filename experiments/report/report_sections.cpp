@@ -7,24 +7,11 @@
 #include "experiments/report/studies.h"
 #include "experiments/report/svg_figure.h"
 #include "experiments/runs/measured_run.h"
+#include "experiments/simulate_report.h"
 #include "experiments/studies/precision/contest_figure.h"
 
 namespace springstab {
 namespace {
-
-const char* why_stopped(StepStatus status) {
-  switch (status) {
-    case StepStatus::diverged:
-      return ": it diverged";
-    case StepStatus::not_positive_definite:
-      return ": 1 + hD' + h²K' was not positive definite, as springs in compression may make it";
-    case StepStatus::not_converged:
-      return ": a step had no solution";
-    case StepStatus::done:
-      break;
-  }
-  return "";
-}
 
 constexpr std::size_t most_regions = 2;
 constexpr const char* without_gnuplot = "No picture: gnuplot was not found.";
@@ -145,8 +132,8 @@ void ReportPage::add_motion() {
   else
     page_.paragraph(said + ' ' + without_gnuplot);
   if (!along.value->done)
-    page_.paragraph(text("The run stopped at %.4g s of %.4g s%s.", along.value->end, along.value->duration,
-                         why_stopped(along.value->status)),
+    page_.paragraph(text("The run did not come to its end: %s at %.4g s of %.4g s.",
+                         outcome(along.value->status), along.value->end, along.value->duration),
                     "warnings");
 }
 

@@ -245,6 +245,25 @@ BOOST_AUTO_TEST_CASE(coupled_impulses_lead_to_the_nearest_velocity_and_keep_mome
   }
 }
 
+// Eight contacts of six nodes, rough ones, of which sweeps with friction would give energy to some.
+BOOST_AUTO_TEST_CASE(coupled_impulses_with_friction_give_no_energy) {
+  test::RandomNets random(8);
+  int unsettled = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const int nodes = 6;
+    std::vector<double> inverse_mass;
+    for (int k = 0; k < nodes; ++k) inverse_mass.push_back(random.log_uniform(-1, 1));
+    std::vector<Vector3d> v;
+    for (int k = 0; k < nodes; ++k) v.push_back(random_vector(3, 100 * i + k));
+    std::vector<PairContact> contacts;
+    for (int k = 0; k < 8; ++k) contacts.push_back(random_contact(random, nodes));
+    const double before = kinetic(v, inverse_mass);
+    unsettled += !CoupledImpulses(inverse_mass).solve(contacts, 5, v);
+    BOOST_TEST(kinetic(v, inverse_mass) <= before * (1 + 1e-14));
+  }
+  BOOST_TEST(unsettled > 0);
+}
+
 BOOST_AUTO_TEST_CASE(what_moves_as_one_keeps_momentum_and_loses_energy) {
   test::RandomNets random(4);
   for (int i = 0; i < 100; ++i) {

@@ -37,9 +37,9 @@ struct Checkpoint {
 
 /// Steps taken together, of which nobody looks at any but the last. What the watch would object to is left to
 /// steps one by one.
-class Together {
+class UnseenSteps {
  public:
-  Together(const Observer& observe, const UnseenUntil& unseen_until, const EnergyWatch& watch)
+  UnseenSteps(const Observer& observe, const UnseenUntil& unseen_until, const EnergyWatch& watch)
       : observe_(observe), unseen_until_(unseen_until), watch_(watch) {}
 
   /// How many it took, from where the stage is; if none, the next one is to be taken by itself.
@@ -136,7 +136,7 @@ SimulationResult resume_simulation(System& system, Stepper& stepper, RunSoFar ru
   double h = stages.back().plan.h;  // for which the state carries what it does
   Checkpoint checkpoint{state, run.steps, run.time, h};
   State<Vector> before;  // the step that is filtered
-  Together together(observe, unseen_until, watch);
+  UnseenSteps together(observe, unseen_until, watch);
   stepper.restart(stages.back().plan.steps_per_linearization);
   if (observe && !observe(run, state)) return static_cast<SimulationResult&&>(run);
   const auto has_diverged = [&](double t) {

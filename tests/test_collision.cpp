@@ -10,6 +10,7 @@
 
 #include "solvers/contact/surface_pairs.h"
 #include "tests/allocation_counter.h"
+#include "tests/instruments.h"
 #include "tests/intersections.h"
 
 BOOST_AUTO_TEST_SUITE(collision)
@@ -349,6 +350,8 @@ void place_sheet(Places& x, int n, double spacing, double height) {
     for (int j = 0; j < n; ++j) x.emplace_back(i * spacing, height, j * spacing);
 }
 
+constexpr int compared = test::times(1, 10);  // each how many steps with all pairs there are
+
 /// Two wavy sheets over each other, which drift and shake.
 struct TwoSheets {
   static constexpr int n = 12;
@@ -466,7 +469,7 @@ BOOST_AUTO_TEST_CASE(kept_pairs_are_those_of_the_moment_and_take_no_memory, *wit
     collisions += static_cast<long>(met.size());
     if (step > 0 && kept.counts().rebuilds + kept.counts().strays == rebuilt)
       taken += allocations() - before;  // lists may grow
-    BOOST_TEST(equal(met, all_impacts(sheets.surface, sheets.x, next)));
+    if (step % compared == 0) BOOST_TEST(equal(met, all_impacts(sheets.surface, sheets.x, next)));
     sheets.x = next;
   }
   BOOST_TEST(proximities > 1000);
@@ -495,7 +498,7 @@ BOOST_AUTO_TEST_CASE(ways_that_go_on_as_they_went_are_foreseen, *with_embree) {
     for (std::size_t i = 0; i < next.size(); ++i) next[i] += way[i];
     const auto met = kept.collisions(sheets.x, next);
     collisions += static_cast<long>(met.size());
-    BOOST_TEST(equal(met, all_impacts(sheets.surface, sheets.x, next)));
+    if (step % compared == 0) BOOST_TEST(equal(met, all_impacts(sheets.surface, sheets.x, next)));
     SurfacePairs fresh(sheets.surface, static_cast<int>(sheets.x.size()), {0.004, 0.004});
     BOOST_TEST(equal(kept.proximities(next, 0.004), fresh.proximities(next, 0.004)));
     sheets.x = next;

@@ -1,6 +1,7 @@
 // Many unknowns: proofs at their edge by blocks and by pieces, and k0 to few digits.
 #include <boost/test/unit_test.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +14,7 @@
 #include "analysis/spectra/spectrum.h"
 #include "analysis/structure_limits.h"
 #include "solvers/team.h"
+#include "tests/instruments.h"
 #ifdef SPRINGSTAB_CHOLMOD
 #include "analysis/proofs/pieces.h"
 #endif
@@ -246,7 +248,7 @@ SparseMatrix uneven_net(int n) {
 }
 
 BOOST_AUTO_TEST_CASE(pieces_prove_what_is_true_with_a_loss_that_overlap_makes_small) {
-  const int n = 200;
+  const int n = test::times(200, 100);
   const double k0 = membrane_k0(n);
   const SparseMatrix even = membrane(n), uneven = uneven_net(100);
   const StiffestMode uneven_k0 = stiffest_mode(prepare(uneven), {.tolerance = 1e-8});
@@ -279,7 +281,7 @@ BOOST_AUTO_TEST_CASE(pieces_prove_as_much_with_any_number_of_threads) {
   BOOST_TEST(pieces.count() >= 5);
   const auto least_loss = [&] {
     double failed = 0, proved = 0.1;
-    for (int halving = 0; halving < 16; ++halving) {
+    for (int halving = 0; halving < test::times(16, 4); ++halving) {
       const double middle = (failed + proved) / 2;
       (pieces.prove(shifted(a, membrane_k0(n) * (1 + middle))) ? proved : failed) = middle;
     }
@@ -301,6 +303,46 @@ BOOST_AUTO_TEST_CASE(one_piece_loses_nothing) {
   BOOST_TEST(one.count() == 1);
   BOOST_TEST(one.prove(shifted(a, membrane_k0(50) * (1 + 1e-9))));
   BOOST_TEST(!one.prove(shifted(a, membrane_k0(50))));
+}
+
+// Each of the membrane's unknowns as `many` that are coupled to each other and to the neighbours', by full
+// blocks or axis by axis.
+SparseMatrix of_particles(const SparseMatrix& a, int many, bool full) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index j = 0; j < a.cols(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      for (int p = 0; p < many; ++p)
+        for (int q = 0; q < many; ++q)
+          if (full || p == q || it.row() == j)
+            entries.emplace_back(many * it.row() + p, many * j + q, it.value());
+  SparseMatrix all(many * a.rows(), many * a.cols());
+  all.setFromTriplets(entries.begin(), entries.end());
+  return all;
+}
+
+// 24 x 24 particles: any number of unknowns up to three divides that of all.
+BOOST_AUTO_TEST_CASE(the_unknowns_of_a_particle_are_one_node) {
+  for (const int many : {2, 3})
+    BOOST_TEST(graph_of(of_particles(membrane(24), many, true)).unknowns_a_node == many);
+  BOOST_TEST(graph_of(of_particles(membrane(24), 3, false)).unknowns_a_node == 3);
+}
+
+// Every third unknown coupled to nothing: all of them are eliminated once, those first.
+BOOST_AUTO_TEST_CASE(what_is_coupled_to_nothing_is_eliminated_first) {
+  const SparseMatrix a = of_particles(membrane(24), 2, true);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index j = 0; j < a.cols(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      entries.emplace_back(it.row() / 2 * 3 + it.row() % 2, j / 2 * 3 + j % 2, it.value());
+  const int n = 3 * 24 * 24;
+  for (int i = 2; i < n; i += 3) entries.emplace_back(i, i, 1);
+  SparseMatrix with_more(n, n);
+  with_more.setFromTriplets(entries.begin(), entries.end());
+  std::vector<long> order = dissection_order(with_more);
+  BOOST_REQUIRE(std::ssize(order) == n);
+  for (int i = 0; i < n / 3; ++i) BOOST_TEST(order[i] == 3 * i + 2);
+  std::sort(order.begin(), order.end());
+  for (int i = 0; i < n; ++i) BOOST_TEST(order[i] == i);
 }
 
 // Two ranks with a half of the membrane each, which see no farther than they must: their verdicts together

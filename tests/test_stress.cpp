@@ -3,9 +3,11 @@
 #include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "analysis/method.h"
 #include "experiments/studies/stress/stress.h"
+#include "tests/instruments.h"
 #include "tests/scratch.h"
 
 BOOST_AUTO_TEST_SUITE(stress)
@@ -29,8 +31,9 @@ BOOST_AUTO_TEST_CASE(the_catalogue_has_cases_of_every_class_and_no_case_twice) {
 }
 
 BOOST_AUTO_TEST_CASE(cheap_cases_come_out_as_expected) {
-  for (const char* filter :
-       {"stiffness, ", "time unit", "structure", "mesh, ", "scene, s", "damping, c", "1.001 h_max, a"}) {
+  const std::vector<const char*> filters{"structure", "mesh, ",     "time unit",     "stiffness, ",
+                                         "scene, s",  "damping, c", "1.001 h_max, a"};
+  for (const char* filter : std::span(filters).first(test::times(filters.size(), 2ul))) {
     const std::vector<StressResult> results = run_catalogue(filter, quiet);
     BOOST_TEST(!results.empty());
     for (const StressResult& r : results)

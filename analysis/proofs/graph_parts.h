@@ -1,6 +1,6 @@
 // The graph of a symmetric matrix, and METIS's answers about it: an order of elimination by nested
-// dissection, and a division into parts. Three unknowns in a row are one node where the size allows and
-// nothing else is said: they are a particle.
+// dissection, and a division into parts. One, two or three unknowns in a row are a node, whichever makes the
+// smaller graph where nothing else is said: those of a particle.
 #pragma once
 
 #include <Eigen/SparseCore>
@@ -13,6 +13,7 @@ struct Graph {
   std::vector<int> start{0}, neighbour;  // of each node, ascending, without itself
 
   int size() const { return static_cast<int>(start.size()) - 1; }
+  bool operator==(const Graph&) const = default;
 };
 
 /// Both triangles are stored, zeros included.

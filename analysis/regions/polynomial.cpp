@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "analysis/gsl/numerics.h"
@@ -24,6 +25,36 @@ double polished(const Polynomial& p, const Polynomial& slope, double root) {
     root = better;
   }
   return root;
+}
+
+// Horner's scheme for polynomials, in place: it is most of what the constants of a region cost.
+class Horner {
+ public:
+  /// p <- p q + r
+  void step(std::span<const double> q, std::span<const double> r) {
+    next_.assign(std::max(p_.empty() || q.empty() ? 0 : p_.size() + q.size() - 1, r.size()), 0.0);
+    for (std::size_t i = 0; i < p_.size(); ++i)
+      for (std::size_t j = 0; j < q.size(); ++j) next_[i + j] += p_[i] * q[j];
+    for (std::size_t i = 0; i < r.size(); ++i) next_[i] += r[i];
+    trim(next_);
+    p_.swap(next_);
+  }
+  void clear() { p_.clear(); }
+  std::span<const double> value() const { return p_; }
+
+ private:
+  std::vector<double> p_, next_;
+};
+
+// Σ c_ab X^a Y^b
+Polynomial substituted(const Eigen::ArrayXXd& c, const Polynomial& x, const Polynomial& y) {
+  Horner sum, row;
+  for (Eigen::Index a = c.rows(); a-- > 0;) {
+    row.clear();
+    for (Eigen::Index b = c.cols(); b-- > 0;) row.step(y.c, {&c(a, b), 1});
+    sum.step(x.c, row.value());
+  }
+  return {{sum.value().begin(), sum.value().end()}};
 }
 
 }  // namespace
@@ -118,17 +149,8 @@ Polynomial BivariatePolynomial::along(const Polynomial& x, const Polynomial& y) 
     for (double& c : p.c) c = std::abs(c);
     return p;
   };
-  const Polynomial abs_x = absolute(x), abs_y = absolute(y);
-  Polynomial sum, size;
-  for (Eigen::Index a = value_.rows(); a-- > 0;) {
-    Polynomial row, row_size;
-    for (Eigen::Index b = value_.cols(); b-- > 0;) {
-      row = row * y + Polynomial{{value_(a, b)}};
-      row_size = row_size * abs_y + Polynomial{{std::abs(value_(a, b))}};
-    }
-    sum = sum * x + row;
-    size = size * abs_x + row_size;
-  }
+  Polynomial sum = substituted(value_, x, y);
+  const Polynomial size = substituted(value_.abs(), absolute(x), absolute(y));
   for (std::size_t i = 0; i < sum.c.size(); ++i)
     if (std::abs(sum.c[i]) <= noise * size.c[i]) sum.c[i] = 0;
   trim(sum.c);

@@ -29,7 +29,11 @@ NumericalRange::NumericalRange(const StructuralMatrices& s, ArpackOptions option
   if (size_ >= many_unknowns && is_diagonal(s.mass)) {
     const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
     sparse_stiffness_ = scaled(s.stiffness, d);
-    if (s.has_damping()) sparse_damping_ = scaled(s.damping, d);
+    if (s.has_damping()) {  // both with the entries of either, for sums entry by entry
+      sparse_damping_ = scaled(s.damping, d);
+      sparse_stiffness_ = SparseMatrix(sparse_stiffness_ + 0 * sparse_damping_);
+      sparse_damping_ = SparseMatrix(sparse_damping_ + 0 * sparse_stiffness_);
+    }
   }
   if (size_ > dense_limit) return;
   dense_damping_ = symmetric_part(as_dense(damping_));
@@ -50,8 +54,9 @@ LinearOperator NumericalRange::sum(double a, double b) const {
   const double bound = lowest(a, damping_) + lowest(b, stiffness_);
   const double shift = std::isfinite(bound) ? -bound : 0;
   if (sparse_stiffness_.size() > 0) {
-    SparseMatrix matrix = b * sparse_stiffness_;
-    if (sparse_damping_.size() > 0) matrix = SparseMatrix(matrix + a * sparse_damping_);
+    SparseMatrix matrix = sparse_stiffness_;
+    matrix.coeffs() *= b;
+    if (sparse_damping_.size() > 0) matrix.coeffs() += a * sparse_damping_.coeffs();
     LinearOperator op = symmetric_operator(std::move(matrix));
     const auto apply = std::move(op.apply);
     op.apply = [apply, shift](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
@@ -79,7 +84,7 @@ std::optional<ExtremePoint> NumericalRange::farthest(double a, double b, double 
                                                           : nullptr;
   if (!axis) return search(a, b, tolerance, near);
   if (!*axis || (*axis)->tolerance > tolerance) {
-    const std::optional<ExtremePoint> found = search(a, b, tolerance, near);
+    const std::optional<ExtremePoint> found = search(a, b, tolerance, *axis ? (*axis)->point.vector : near);
     if (!found) return std::nullopt;
     *axis = {*found, tolerance};
   }

@@ -270,11 +270,11 @@ void tighten_bound(StiffestMode& mode, double gap, const std::function<bool(doub
 
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options, double loss) {
   StiffestMode mode;
-  std::optional<DefinitenessProof> proof;
+  std::optional<DefinitenessProof> proof;  // of D's pattern too, which later proofs about `s` then share
   const auto find = [&] { mode = estimated_stiffest_mode(s, options); };
   if (s.symmetric && s.size() >= many_unknowns && loop_threads() > 1) {
     both_at_once(find, [&] {
-      proof.emplace(StructuralMatrices{s.stiffness, s.mass, {}}, loss);
+      proof.emplace(s, loss);
       if (proof->factorizes()) proof->stiffness_is_semidefinite();
     });
   } else {
@@ -287,7 +287,7 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   }
   if (!mode.converged || !s.symmetric) return mode;
 
-  if (!proof) proof.emplace(StructuralMatrices{s.stiffness, s.mass, {}}, loss);
+  if (!proof) proof.emplace(s, loss);
   find_lowest(s, options, *proof, mode);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;

@@ -1,4 +1,5 @@
 // Runs, with their frames as arrays.
+#include "analysis/constants.h"
 #include "analysis/limits/step_policy.h"
 #include "experiments/runs/step_run.h"
 #include "experiments/simulate_report.h"
@@ -20,7 +21,7 @@ struct Frames {
       times.pop_back();
       positions.resize(times.size() * rows * std::max<py::ssize_t>(columns, 1));
     }
-    if (!(interval > 0) || t < interval * (1 - 1e-12) * static_cast<double>(times.size())) return;
+    if (t < next()) return;
     times.push_back(t);
     if (input.scene()) {
       const std::vector<Eigen::Vector3d> vertices = input.vertices(x);
@@ -30,6 +31,11 @@ struct Frames {
       rows = x.size();
       positions.insert(positions.end(), x.begin(), x.end());
     }
+  }
+
+  /// When the next one is due.
+  double next() const {
+    return interval > 0 ? interval * (1 - 1e-12) * static_cast<double>(times.size()) : infinity;
   }
 
   py::array_t<double> array() const {
@@ -87,8 +93,9 @@ py::dict simulate(Subject& model, const StepOptions& options, bool designed, int
     const auto contact = model.contact_filter();
     EnergyWatch watch = chooser.watch(start);
     if (contact) watch = with_obstacles(watch, *model.contact());
+    const UnseenUntil unseen_until = [&] { return callback ? -infinity : kept.next(); };
     result = springstab::simulate(model.system(), *stepper, plan, watch, state, observe, chooser.policy(),
-                                  contact.get());
+                                  contact.get(), unseen_until);
   }
   py::dict d;
   d["method"] = chooser.method().name();

@@ -22,6 +22,7 @@
 #include "solvers/linear/dense_solvers.h"
 #include "solvers/methods/explicit_runge_kutta.h"
 #include "solvers/scene/every_pose.h"
+#include "tests/instruments.h"
 #include "tests/random_nets.h"
 #include "tests/shared_data.h"
 
@@ -472,15 +473,17 @@ BOOST_AUTO_TEST_CASE(a_step_for_every_pose_is_stable_in_each) {
     }
 }
 
+constexpr int nets = test::times(200, 20);
+
 BOOST_AUTO_TEST_CASE(certified_steps_are_below_the_truth_on_any_net) {
   int i = 0;
   const auto any = [&](RandomNets& random) { return matrices(random.net(i++ % 2 == 0)); };
   for (const Method& method : all_methods()) {
     const StabilityRegion& region = stability_region(method.name());
     if (region.exact_condition() || region.constants().covers_quadrant || method.info().linearized) continue;
-    const std::vector<double> shares = certified_shares(by_polygons, method.name(), 7, 200, any);
+    const std::vector<double> shares = certified_shares(by_polygons, method.name(), 7, nets, any);
     if (method.name() == "rk4") {
-      BOOST_TEST(shares[100] >= 0.98);
+      BOOST_TEST(shares[nets / 2] >= 0.98);
       BOOST_TEST(shares[0] >= 0.5);
     }
   }
@@ -493,15 +496,15 @@ BOOST_AUTO_TEST_CASE(certified_steps_are_sharp_where_dampers_resist_what_springs
     for (Spring& spring : net.springs) spring.damping = time * spring.stiffness * random.uniform(0.5, 2);
     return matrices(net);
   };
-  const std::vector<double> rk2 = certified_shares(by_polygons, "rk2", 8, 200, damped);
-  BOOST_TEST(rk2[100] >= 0.8);
-  BOOST_TEST(rk2[10] >= 0.5);
-  const std::vector<double> euler = certified_shares(by_polygons, "explicit-euler", 9, 200, damped);
+  const std::vector<double> rk2 = certified_shares(by_polygons, "rk2", 8, nets, damped);
+  BOOST_TEST(rk2[nets / 2] >= 0.8);
+  BOOST_TEST(rk2[nets / 20] >= 0.5);
+  const std::vector<double> euler = certified_shares(by_polygons, "explicit-euler", 9, nets, damped);
   BOOST_TEST(euler[0] > 0);
-  BOOST_TEST(euler[100] >= 0.98);
-  BOOST_TEST(euler[10] >= 0.5);
-  const std::vector<double> rk4 = certified_shares(by_polygons, "rk4", 10, 200, damped);
-  BOOST_TEST(rk4[100] >= 0.98);
+  BOOST_TEST(euler[nets / 2] >= 0.98);
+  BOOST_TEST(euler[nets / 20] >= 0.5);
+  const std::vector<double> rk4 = certified_shares(by_polygons, "rk4", 10, nets, damped);
+  BOOST_TEST(rk4[nets / 2] >= 0.98);
 }
 
 // Where every mode loses 1e-10 of its size in a step, which rounding does not hide beside 1e-9 of the fastest
@@ -592,7 +595,7 @@ BOOST_AUTO_TEST_CASE(magnitudes_do_not_cancel) {
 BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {
   RandomNets random(14);
   int proved = 0, tried = 0;
-  for (int i = 0; i < 100; ++i) BOOST_TEST_CONTEXT("net " << i) {
+  for (int i = 0; i < test::times(100, 10); ++i) BOOST_TEST_CONTEXT("net " << i) {
       const StructuralMatrices s = matrices(random.net(i % 2 == 0));
       for (const std::string_view method : {"explicit-euler", "rk2", "rk4"})
         if (const auto h = critical_step(method, generator_spectrum(s).value())) {
@@ -605,7 +608,7 @@ BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_is_not_stable) {
         }
     }
   BOOST_TEST(proved > 0.9 * tried);
-  BOOST_TEST(tried > 200);
+  BOOST_TEST(tried > test::times(200, 20));
 }
 
 BOOST_AUTO_TEST_CASE(no_lyapunov_matrix_proves_what_it_cannot_see) {
@@ -664,7 +667,7 @@ SpringNet damped_sheet(RandomNets& random, int rows, int columns) {
 BOOST_AUTO_TEST_CASE(modes_near_a_shift_are_those_of_the_whole_spectrum) {
   RandomNets random(15);
   int found = 0;
-  for (int i = 0; i < 10; ++i) BOOST_TEST_CONTEXT("sheet " << i) {
+  for (int i = 0; i < test::times(10, 2); ++i) BOOST_TEST_CONTEXT("sheet " << i) {
       const StructuralMatrices s = matrices(damped_sheet(random, 5, 6));
       const std::vector<std::complex<double>> all = generator_spectrum(s).value();
       const std::complex<double> shift =
@@ -677,7 +680,7 @@ BOOST_AUTO_TEST_CASE(modes_near_a_shift_are_those_of_the_whole_spectrum) {
         ++found;
       }
     }
-  BOOST_TEST(found >= 40);
+  BOOST_TEST(found >= test::times(40, 8));
 }
 
 BOOST_AUTO_TEST_CASE(modes_near_a_shift_need_no_damping_and_no_luck) {

@@ -169,6 +169,7 @@ BOOST_AUTO_TEST_CASE(methods_stable_at_every_step_cover_the_quadrant) {
 BOOST_AUTO_TEST_CASE(explicit_methods_have_their_published_intervals) {
   for (const auto& [stages, interval] :
        {std::pair{2, 2.0}, {3, 6.1802}, {5, 16.6028}, {10, 64.7381}, {20, 260.7526}}) {
+    if (stages > times(20, 5)) continue;
     const Method method("rkc2:stages=" + std::to_string(stages));
     const RegionConstants& c = stability_region(method).constants();
     BOOST_TEST(std::abs(c.real_interval - interval) < 5.1e-5, method.name());

@@ -92,7 +92,8 @@ struct Record {
 }  // namespace
 
 // At 1.02 of the limit the slowest to grow is explicit Euler: |λ|² - 1 is about 0.02 Y, here 0.03.
-BOOST_AUTO_TEST_CASE(the_linear_limit_of_a_cloth_parts_bounded_runs_from_diverging_ones) {
+BOOST_AUTO_TEST_CASE(the_linear_limit_of_a_cloth_parts_bounded_runs_from_diverging_ones,
+                     *boost::unit_test::label("slow")) {
   const RayleighDamping damping{1, 3e-4};
   Scene scene = cloth(32, damping);
   BlockLinearSystem system = stretched(scene, 32);
@@ -149,7 +150,8 @@ BOOST_AUTO_TEST_CASE(implicit_euler_stays_bounded_far_beyond_the_explicit_limits
 
 // Undamped drift-kick Euler conserves E + (h/2) xᵀKv exactly. At half its limit h√k <= 1 for every mode, so
 // that E itself stays within a factor of (1 + ½)/(1 - ½) = 3.
-BOOST_AUTO_TEST_CASE(symplectic_euler_conserves_its_own_energy_for_ten_thousand_steps) {
+BOOST_AUTO_TEST_CASE(symplectic_euler_conserves_its_own_energy_for_ten_thousand_steps,
+                     *boost::unit_test::label("slow")) {
   Scene scene = cloth(12);
   BlockLinearSystem system = stretched(scene, 12);
   const double h = 1 / std::sqrt(stiffest_mode(matrices_of(system)).value);

@@ -108,7 +108,7 @@ for line in sys.stdin:
 }
 
 // The examples, in three languages: n pendulums of 10 1/s², joined by 400 1/s², between walls.
-BOOST_FIXTURE_TEST_CASE(the_examples_have_their_methods_limits, Command) {
+BOOST_FIXTURE_TEST_CASE(the_examples_have_their_methods_limits, Command, *boost::unit_test::label("slow")) {
   const std::string probes = "'" + springstab::test::source_folder() + "/experiments/probes/";
   const auto has = [&](const std::string& line, const std::string& what) {
     if (shell(line + " >&2").status == 0) return true;

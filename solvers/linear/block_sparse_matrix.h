@@ -89,8 +89,9 @@ void BlockSparseMatrix::multiply_rows(const double* in, const IndexRange& range,
                                       const Take& take) const {
   constexpr long ahead =
       256;  // numbers to prefetch, two kilobytes: the hardware alone reaches 80 % of the memory
+  if (range.first == range.last) return;
   const int last = rows() - 1;
-  const double* const in_last = in + 3 * static_cast<long>(last);
+  const double* const in_last = in + 3 * (range.last - 1);  // of what others may be making, nothing
   const double copy[4] = {in_last[0], in_last[1], in_last[2], 0};
   const long* const row_start = pattern_->row_start_.data();
   const int* const column = pattern_->column_.data();

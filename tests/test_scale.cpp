@@ -248,7 +248,7 @@ SparseMatrix uneven_net(int n) {
 }
 
 BOOST_AUTO_TEST_CASE(pieces_prove_what_is_true_with_a_loss_that_overlap_makes_small) {
-  const int n = test::times(200, 150);
+  const int n = test::times(200, 160);
   const double k0 = membrane_k0(n);
   const SparseMatrix even = membrane(n), uneven = uneven_net(100);
   const StiffestMode uneven_k0 = stiffest_mode(prepare(uneven), {.tolerance = 1e-8});

@@ -38,8 +38,9 @@ DefinitenessProof::DefinitenessProof(StructuralMatrices s, double loss)
   take_matrices();
 }
 
-DefinitenessProof::DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass, double loss)
-    : stiffness_(&stiffness), mass_(&mass), damping_(nullptr), loss_(loss) {
+DefinitenessProof::DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                                     const SparseMatrix* damping, double loss)
+    : stiffness_(&stiffness), mass_(&mass), damping_(damping), loss_(loss) {
   take_matrices();
 }
 

@@ -24,8 +24,9 @@ class DefinitenessProof {
   /// are proved there.
   explicit DefinitenessProof(StructuralMatrices s, double loss = usual_loss);
   static constexpr double usual_loss = 2e-3;
-  /// Of K and M alone, which must outlive it.
-  DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass, double loss = usual_loss);
+  /// Of matrices that must outlive it.
+  DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                    const SparseMatrix* damping = nullptr, double loss = usual_loss);
 
   /// Of a structure whose matrices are distributed: `s` are rows and columns of it, those that `own` pieces
   /// and their neighbours need (Pieces), and `all_of` says whether something is true of everybody, who is

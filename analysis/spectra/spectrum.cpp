@@ -301,7 +301,7 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   const bool factorized_at_once = s.size() >= many_unknowns && s.size() <= SparseCholesky::unknowns_limit;
   if (s.symmetric && factorized_at_once && loop_threads() > 1) {
     both_at_once(find, [&] {
-      proof.emplace(s.stiffness, s.mass, loss);
+      proof.emplace(s.stiffness, s.mass, nullptr, loss);
       if (proof->factorizes()) proof->stiffness_is_semidefinite();
     });
   } else {
@@ -314,7 +314,7 @@ StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& opt
   }
   if (!mode.converged || !s.symmetric) return mode;
 
-  if (!proof) proof.emplace(s.stiffness, s.mass, loss);
+  if (!proof) proof.emplace(s.stiffness, s.mass, nullptr, loss);
   find_lowest(s, options, *proof, mode);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;

@@ -28,8 +28,11 @@ MatricesSize size_of(const StructuralMatrices& s) {
   return {static_cast<long>(s.size()), static_cast<long>(s.condensed), s.condensed_rate, s.symmetric};
 }
 
+// Of large scenes nothing is kept that only another linearization would need.
 Structure structure_at(Subject& subject, const State<Vector>& start) {
+  constexpr Eigen::Index large = 1'000'000;  // unknowns
   Structure structure = subject.structure(start);
+  if (Scene* const scene = subject.scene(); scene && scene->size() >= large) scene->forget_matrices();
   structure.every_pose = subject.every_pose();
   return structure;
 }

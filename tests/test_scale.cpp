@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "analysis/constants.h"
@@ -13,6 +15,7 @@
 #include "analysis/spectra/rigid_motions.h"
 #include "analysis/spectra/spectrum.h"
 #include "analysis/structure_limits.h"
+#include "solvers/linear/block_sparse_matrix.h"
 #include "solvers/team.h"
 #include "tests/instruments.h"
 #ifdef SPRINGSTAB_CHOLMOD
@@ -377,6 +380,103 @@ BOOST_AUTO_TEST_CASE(pieces_of_parts_that_see_their_neighbours_are_those_of_the_
   BOOST_TEST(proved > 3);
   BOOST_TEST(refused > 6);  // also what is true, but too near
 }
+
+// A chain, an N x N membrane or an N x N x N block with springs between neighbours.
+Graph lattice(int n, int dimensions) {
+  Graph graph;
+  int nodes = 1;
+  for (int d = 0; d < dimensions; ++d) nodes *= n;
+  for (int i = 0; i < nodes; ++i) {
+    for (int d = 0, stride = 1; d < dimensions; ++d, stride *= n)
+      for (const int step : {-1, 1})
+        if (const int at = i / stride % n + step; at >= 0 && at < n)
+          graph.neighbour.push_back(i + step * stride);
+    graph.start.push_back(static_cast<int>(graph.neighbour.size()));
+  }
+  return graph;
+}
+
+// A ball of radius r has 2r + 1 nodes of a chain, and (2r + 1)(2r² + 2r + 3)/3 of a block.
+BOOST_AUTO_TEST_CASE(balls_of_a_lattice_grow_as_its_dimension_says) {
+  const std::vector<long> chain = largest_balls(lattice(5000, 1), 300, 4),
+                          block = largest_balls(lattice(41, 3), 1000, 2);
+  BOOST_TEST(chain.size() == 150 + 4 + 1);
+  for (long r = 0; r < std::ssize(chain); ++r) BOOST_TEST(chain[r] == 2 * r + 1);
+  BOOST_TEST(block.size() == 9 + 2 + 1);
+  for (long r = 0; r < std::ssize(block); ++r)
+    BOOST_TEST(block[r] <= (2 * r + 1) * (2 * r * r + 2 * r + 3) / 3);
+  for (long r = 0; r < 8; ++r) BOOST_TEST(block[r] > 3 * r * r);
+  BOOST_TEST(largest_balls(lattice(20, 1), 300, 4).back() == 20);
+}
+
+BOOST_AUTO_TEST_CASE(pieces_of_solids_are_smaller_than_those_of_nets_and_the_smaller_the_less_they_overlap) {
+  const Graph net = lattice(400, 2), solid = lattice(54, 3);
+  BOOST_TEST(Pieces::cheapest_particles(net, 11) == Pieces::usual_particles);
+  const int few = Pieces::cheapest_particles(solid, 3), many = Pieces::cheapest_particles(solid, 9);
+  BOOST_TEST(few < many);
+  BOOST_TEST(many < Pieces::usual_particles);
+  BOOST_TEST(few > 63);  // a ball of as many layers as overlap: what is around it is 6 times that
+}
+
+// Of matrices of which nothing is kept but K and M: as much is proved as of the matrix that they make.
+BOOST_AUTO_TEST_CASE(a_proof_by_pieces_of_columns_formed_in_turn_is_that_of_the_matrix) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> weight(0.5, 2);
+  StructuralMatrices s;
+  s.stiffness = uneven_net(40);
+  Eigen::VectorXd mass(s.size());
+  for (double& m : mass) m = weight(random);
+  s.mass = SparseMatrix(mass.asDiagonal());
+  const SparseMatrix unit = scaled(s.stiffness, mass.cwiseSqrt().cwiseInverse());
+  const auto pieces = std::make_shared<const Pieces>(s.stiffness, 300, 4);
+  BOOST_TEST(pieces->count() >= 5);
+  const double k0 = stiffest_mode(s, {.tolerance = 1e-8}).value;
+  DefinitenessProof formed(s, pieces, [](bool mine) { return mine; });
+  int proved = 0, refused = 0;
+  for (double above = 0; above < 0.1; above += 0.004) {
+    const bool of_matrix = pieces->prove(shifted(unit, k0 * (1 + above)));
+    BOOST_TEST(formed.holds(k0 * (1 + above), 0, 1) == of_matrix, above);
+    BOOST_TEST(formed.holds(2 * k0 * (1 + above), 0, 2) == of_matrix, above);
+    ++(of_matrix ? proved : refused);
+  }
+  BOOST_TEST(proved > 3);
+  BOOST_TEST(refused > 1);
+}
+
+// Of M and D with entries where K has none.
+BOOST_AUTO_TEST_CASE(a_proof_takes_matrices_of_different_patterns) {
+  const int n = 12;
+  StructuralMatrices s;
+  s.stiffness = membrane(n);
+  s.mass = SparseMatrix(0.01 * membrane(n) * membrane(n));  // neighbours of neighbours, too
+  SparseMatrix unit(n * n, n * n);
+  unit.setIdentity();
+  s.mass += unit;
+  s.damping = SparseMatrix(membrane(n) * membrane(n));
+  const double k = membrane_k0(n), m = 1 + 0.01 * k * k;  // all have the membrane's modes
+  for (const auto& [a, b] : {std::pair{0.3, 0.0}, {0.0, 0.2}, {0.3, 0.2}}) {
+    const double least =
+        (a * k * k + b * k) / m;  // c of the stiffest mode, and as more k makes more of it, of all
+    DefinitenessProof proof(s);
+    BOOST_TEST(proof.holds(least * (1 + 1e-9), a, b));
+    BOOST_TEST(!proof.holds(least * (1 - 1e-9), a, b));
+  }
+}
+// diag(d) A diag(d) as blocks and as single numbers.
+BOOST_AUTO_TEST_CASE(blocks_are_scaled_as_numbers_are) {
+  const SparseMatrix a = uneven_net(7);
+  std::optional<BlockSparseMatrix> blocks = in_blocks(a);
+  BOOST_REQUIRE(blocks.has_value());
+  BOOST_TEST((Eigen::MatrixXd(blocks->to_sparse()) == Eigen::MatrixXd(a)));
+  Eigen::VectorXd d(a.rows());
+  for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = 1 + 0.37 * static_cast<double>(i % 11);
+  blocks->scale(d);
+  const SparseMatrix sparse = blocks->to_sparse(), expected = scaled(a, d);
+  BOOST_TEST(sparse.isCompressed());
+  BOOST_TEST(sparse.nonZeros() == expected.nonZeros());
+  BOOST_TEST((Eigen::MatrixXd(sparse) == Eigen::MatrixXd(expected)));
+}
+
 #endif
 
 BOOST_AUTO_TEST_SUITE_END()

@@ -438,6 +438,26 @@ BOOST_AUTO_TEST_CASE(a_scene_without_linearizations_has_no_matrix) {
   BOOST_TEST(damping.alpha == 2e-3);
 }
 
+// A scene that forgot its matrices makes the same ones again.
+BOOST_AUTO_TEST_CASE(matrices_that_were_forgotten_come_again) {
+  Random random(6);
+  const SpringNet net = random_net(random);
+  Scene scene(net, some_pins, {0, -9.81, 0}, {0.1, 1e-3});
+  State<Vector> state = scene.rest_state();
+  for (double& x : state.x) x += 0.01 * random(-1, 1);
+  const auto first = scene.linearization(state);
+  scene.forget_matrices();
+  BOOST_TEST(!scene.has_matrices());
+  const auto again = scene.linearization(state);
+  BOOST_TEST(scene.has_matrices());
+  BOOST_TEST(first->stiffness().blocks() > first->stiffness().rows());
+  BOOST_TEST(
+      (Eigen::MatrixXd(first->stiffness().to_sparse()) == Eigen::MatrixXd(again->stiffness().to_sparse())));
+  BOOST_REQUIRE((first->own_damping() && again->own_damping()));
+  BOOST_TEST((Eigen::MatrixXd(first->own_damping()->to_sparse()) ==
+              Eigen::MatrixXd(again->own_damping()->to_sparse())));
+}
+
 // Each who asks has a linearization of its own, and what one does with it the others do not see.
 BOOST_AUTO_TEST_CASE(a_linearization_is_owned_by_who_asked) {
   Random random(8);

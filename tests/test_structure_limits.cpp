@@ -93,7 +93,7 @@ BOOST_AUTO_TEST_CASE(numbers_equal_those_of_the_command, *boost::unit_test::labe
     material.stiffness = {20, 10, 2};
     const SpringNet net = make_net(size, material);
     Structure structure = structure_of_scene(net);
-    structure.every_pose = every_pose(net, pinned, {0.5, 0.001});
+    structure.every_pose = [&] { return every_pose(net, pinned, {0.5, 0.001}); };
     StructureLimits answer(std::move(structure), as_the_command);
     const Json theirs =
         report(grid + R"("material": {"structural": 20, "shear": 10, "bending": 2}, )" + scene_end);
@@ -166,7 +166,7 @@ BOOST_AUTO_TEST_CASE(the_answer_owns_what_it_was_asked_of) {
   const auto answer_of = [] {
     StructuralMatrices matrices = uneven_matrices();
     Structure structure = structure_of(matrices);
-    structure.every_pose = matrices;
+    structure.every_pose = [=] { return matrices; };
     StructureLimits answer(std::move(structure));
     answer.limits("rk4");  // so that all of it is built, and then moved
     return std::make_unique<StructureLimits>(std::move(answer));

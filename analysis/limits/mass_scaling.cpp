@@ -128,7 +128,7 @@ MassScaling scale_masses(const SparseMatrix& mass, const SparseMatrix& n, double
   dual.climb();
   const auto holds = [&](const Eigen::VectorXd& tau) {
     const SparseMatrix heavier = mass + SparseMatrix((spread(tau, width) / c).asDiagonal());
-    return DefinitenessProof({more, heavier, {}}).holds(c, 0, 1);
+    return DefinitenessProof(more, heavier).holds(c, 0, 1);
   };
 
   // The multipliers themselves are on the border, and some way off it as long as V is.

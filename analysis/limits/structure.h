@@ -6,6 +6,7 @@
 //     const Structure designed{prepare(stiffness), {.kind = DampingModel::Kind::designed, .d0 = 1}};
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "solvers/linear/structural_matrices.h"
@@ -56,7 +57,8 @@ struct Structure {
   /// then these are the matrices of the structure without its damping.
   StructuralMatrices matrices;
   DampingModel damping;
-  std::optional<StructuralMatrices> every_pose{};  // no pose exceeds them (solvers/scene/every_pose.h)
+  /// Makes matrices that no pose exceeds (solvers/scene/every_pose.h), each time it is called; or nothing.
+  std::function<StructuralMatrices()> every_pose{};
 };
 
 /// Of prepared matrices; what their damping is, is found out.

@@ -103,7 +103,7 @@ MethodLimits StructureLimits::compute(const Method& method) {
     if (std::optional<HalfPlane> condition = matrix_condition(method, structure_->matrices)) {
       condition->x = std::max(condition->x, 0.0);  // damping that helps may be absent in some pose
       limits.every_pose =
-          proved_limit(*structure_->every_pose, *condition, search(ArpackOptions().tolerance));
+          proved_limit(structure_->every_pose(), *condition, search(ArpackOptions().tolerance));
     }
   if (!general) add_transient_growth(method, limits);
   return limits;

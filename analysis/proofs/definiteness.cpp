@@ -3,30 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "analysis/constants.h"
+#include "solvers/team.h"
 #ifdef SPRINGSTAB_CHOLMOD
 #include "analysis/proofs/pieces.h"
 #endif
 
 namespace springstab {
 namespace {
-
-Eigen::VectorXd row_sums(const SparseMatrix& a) { return a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()); }
-
-// The entries of `a`, one for each entry of `all`, whose pattern holds that of `a`.
-Eigen::VectorXd entries_in(const SparseMatrix& all, const SparseMatrix& a) {
-  Eigen::VectorXd entries(all.nonZeros());
-  for (Eigen::Index j = 0, at = 0; j < all.cols(); ++j) {
-    SparseMatrix::InnerIterator own(a, j);
-    for (SparseMatrix::InnerIterator entry(all, j); entry; ++entry, ++at) {
-      const bool there = own && own.row() == entry.row();
-      entries[at] = there ? own.value() : 0;
-      if (there) ++own;
-    }
-  }
-  return entries;
-}
 
 // Whether `all`, which is compressed, has an entry wherever `a` has one.
 bool holds_pattern(const SparseMatrix& all, const SparseMatrix& a) {
@@ -44,24 +30,18 @@ bool holds_pattern(const SparseMatrix& all, const SparseMatrix& a) {
 }  // namespace
 
 DefinitenessProof::DefinitenessProof(StructuralMatrices s, double loss)
-    : lumped_(is_diagonal(s.mass)), loss_(loss) {
-  const Eigen::VectorXd d = s.mass.diagonal().cwiseSqrt().cwiseInverse();
-  for (SparseMatrix* a : {&s.mass, &s.stiffness, &s.damping}) scale(*a, d);
-  mass_size_ = row_sums(s.mass);
-  stiffness_size_ = row_sums(s.stiffness);
-  damping_size_ = s.has_damping() ? row_sums(s.damping) : Eigen::VectorXd::Zero(s.size());
-  if (holds_pattern(s.stiffness, s.mass) && (!s.has_damping() || holds_pattern(s.stiffness, s.damping))) {
-    stiffness_ = s.stiffness.coeffs();
-    matrix_ = std::move(s.stiffness);
-  } else {
-    matrix_ = s.mass + s.stiffness;
-    if (s.has_damping()) matrix_ = SparseMatrix(matrix_ + s.damping);
-    stiffness_ = entries_in(matrix_, s.stiffness);
-  }
-  if (s.has_damping()) damping_ = entries_in(matrix_, s.damping);
-  mass_ = lumped_ ? Eigen::VectorXd(s.mass.diagonal()) : entries_in(matrix_, s.mass);
-  diagonal_.resize(matrix_.rows());
-  sizes_.resize(matrix_.rows());
+    : own_(std::make_unique<const StructuralMatrices>(std::move(s))),
+      stiffness_(&own_->stiffness),
+      mass_(&own_->mass),
+      damping_(own_->has_damping() ? &own_->damping : nullptr),
+      loss_(loss) {
+  take_matrices();
+}
+
+DefinitenessProof::DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                                     const SparseMatrix* damping, double loss)
+    : stiffness_(&stiffness), mass_(&mass), damping_(damping), loss_(loss) {
+  take_matrices();
 }
 
 DefinitenessProof::DefinitenessProof(StructuralMatrices s, std::shared_ptr<const Pieces> own,
@@ -71,32 +51,71 @@ DefinitenessProof::DefinitenessProof(StructuralMatrices s, std::shared_ptr<const
   all_of_ = std::move(all_of);
 }
 
-// c M - a D - b K, in one pass.
-void DefinitenessProof::form(double c, double a, double b) {
-  double* const value = matrix_.valuePtr();
-  const bool damped = damping_.size() > 0;
-  for (Eigen::Index j = 0; j < matrix_.cols(); ++j) {
-    double size = 0;
-    diagonal_[j] = 0;
-    for (Eigen::Index p = matrix_.outerIndexPtr()[j]; p < matrix_.outerIndexPtr()[j + 1]; ++p) {
-      const bool on_diagonal = matrix_.innerIndexPtr()[p] == j;
-      const double mass = !lumped_ ? mass_[p] : on_diagonal ? mass_[j] : 0;
-      double v = c * mass - b * stiffness_[p];
-      if (damped) v -= a * damping_[p];
-      value[p] = v;
-      size += std::abs(v);
-      if (on_diagonal) diagonal_[j] = v;
-    }
-    sizes_[j] = size;
+void DefinitenessProof::take_matrices() {
+  root_ = mass_->diagonal().cwiseSqrt().cwiseInverse();
+  if (holds_pattern(*stiffness_, *mass_) && (!damping_ || holds_pattern(*stiffness_, *damping_))) return;
+  SparseMatrix all = *stiffness_ + 0.0 * *mass_;
+  if (damping_) all = SparseMatrix(all + 0.0 * *damping_);
+  widened_ = std::make_unique<const SparseMatrix>(std::move(all));
+  stiffness_ = widened_.get();
+}
+
+// Column j, an entry for each of K's, in the scale in which M has a unit diagonal.
+DefinitenessProof::Column DefinitenessProof::form(const Sum& sum, Eigen::Index j, double* values) const {
+  SparseMatrix::InnerIterator mass(*mass_, j), damping(damping_ ? *damping_ : *mass_, j);
+  const int *const row = stiffness_->innerIndexPtr(), *const start = stiffness_->outerIndexPtr();
+  double masses = 0, dampings = 0, stiffnesses = 0;  // absolute sums
+  Column column;
+  for (int p = start[j]; p < start[j + 1]; ++p) {
+    const auto take = [&](SparseMatrix::InnerIterator& of, double& size) {
+      if (!of || of.row() != row[p]) return 0.0;
+      const double scaled = root_[row[p]] * of.value() * root_[j];
+      ++of;
+      size += std::abs(scaled);
+      return scaled;
+    };
+    const double stiffness = root_[row[p]] * stiffness_->valuePtr()[p] * root_[j];
+    stiffnesses += std::abs(stiffness);
+    double v = sum.c * take(mass, masses) - sum.b * stiffness;
+    if (damping_) v -= sum.a * take(damping, dampings);
+    *values++ = v;
+    column.size += std::abs(v);
+    if (row[p] == j) column.diagonal = v;
   }
+  column.error = 8 * unit_roundoff *
+                 (std::abs(sum.c) * masses + std::abs(sum.a) * dampings + std::abs(sum.b) * stiffnesses);
+  return column;
+}
+
+DefinitenessProof::Columns DefinitenessProof::measure(const Sum& sum) const {
+  const Eigen::Index n = stiffness_->cols();
+  constexpr double column_cost = 60;  // [ns]
+  Columns all{Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  share_range(n, column_cost, [&](long first, long last) {
+    std::vector<double> values(static_cast<std::size_t>(most_in_a_column(*stiffness_)));
+    for (long j = first; j < last; ++j) {
+      const Column column = form(sum, j, values.data());
+      all.diagonal[j] = column.diagonal, all.size[j] = column.size, all.error[j] = column.error;
+    }
+  });
+  return all;
+}
+
+// Plus a diagonal.
+void DefinitenessProof::form_whole(const Sum& sum, const Eigen::VectorXd& added) {
+  if (matrix_.size() == 0) matrix_ = *stiffness_;
+  for (Eigen::Index j = 0; j < matrix_.cols(); ++j)
+    form(sum, j, matrix_.valuePtr() + matrix_.outerIndexPtr()[j]);
+  matrix_.diagonal() += added;
 }
 
 // What is too large to be factorized at once.
-bool DefinitenessProof::in_pieces([[maybe_unused]] const SparseMatrix& matrix) {
+bool DefinitenessProof::in_pieces([[maybe_unused]] const Sum& sum, [[maybe_unused]] const Columns& columns) {
 #ifdef SPRINGSTAB_CHOLMOD
-  if (!pieces_)
-    pieces_ = std::make_shared<const Pieces>(matrix, Pieces::usual_particles, Pieces::layers_for(loss_));
-  return all_of(pieces_->prove(matrix));
+  if (!pieces_) pieces_ = std::make_shared<const Pieces>(*stiffness_, Pieces::layers_for(loss_));
+  const Eigen::VectorXd diagonal = columns.diagonal - columns.error;
+  return all_of(
+      pieces_->prove({*stiffness_, diagonal, [&](Eigen::Index j, double* values) { form(sum, j, values); }}));
 #else
   return false;
 #endif
@@ -110,41 +129,36 @@ int DefinitenessProof::pieces() const {
 #endif
 }
 
-bool DefinitenessProof::factorizes() { return cholesky_.analyze(matrix_); }
+bool DefinitenessProof::factorizes() { return cholesky_.analyze(*stiffness_); }
 
 bool DefinitenessProof::holds(double c, double a, double b) {
-  form(c, a, b);
-  const Eigen::VectorXd forming_error =
-      8 * unit_roundoff *
-      (std::abs(c) * mass_size_ + std::abs(a) * damping_size_ + std::abs(b) * stiffness_size_);
-  if (!all_of(forming_error.allFinite() && diagonal_.minCoeff() > 0)) return false;
+  const Sum sum{c, a, b};
+  const Columns columns = measure(sum);
+  const auto& [diagonal, size, error] = columns;
+  if (!all_of(error.allFinite() && diagonal.minCoeff() > 0)) return false;
 
   // Gershgorin: 2 a_ii exceeds the row's absolute sum, whose own rounding is below n unit roundoffs of it.
-  const double summing_error = 2 * unit_roundoff * static_cast<double>(matrix_.rows());
-  if (all_of((2 * diagonal_ - sizes_ - 2 * forming_error - summing_error * diagonal_).minCoeff() > 0))
-    return true;
-  if (all_of_ || !cholesky_.analyze(matrix_)) {
-    matrix_.diagonal() -= forming_error;
-    return in_pieces(matrix_);
-  }
-  matrix_.diagonal() -= forming_error + cholesky_.error() * diagonal_;
+  const double summing_error = 2 * unit_roundoff * static_cast<double>(diagonal.size());
+  if (all_of((2 * diagonal - size - 2 * error - summing_error * diagonal).minCoeff() > 0)) return true;
+  if (all_of_ || !factorizes()) return in_pieces(sum, columns);
+  form_whole(sum, -(error + cholesky_.error() * diagonal));
   return cholesky_.factorize(matrix_);
 }
 
 // Of K plus 1e-9 of its diagonal and 1e-13 of its largest entry.
 bool DefinitenessProof::stiffness_is_semidefinite() {
   if (!stiffness_is_semidefinite_) {
-    form(0, 0, -1);
+    const Eigen::VectorXd diagonal = measure({0, 0, -1}).diagonal;
+    form_whole({0, 0, -1}, Eigen::VectorXd::Zero(diagonal.size()));
     const double largest = matrix_.nonZeros() > 0 ? matrix_.coeffs().abs().maxCoeff() : 0;
-    const Eigen::VectorXd lift = (1e-9 * diagonal_.array().abs() + 1e-13 * largest).matrix();
-    matrix_.diagonal() += lift;
+    matrix_.diagonal() += (1e-9 * diagonal.array().abs() + 1e-13 * largest).matrix();
     stiffness_is_semidefinite_ = largest == 0 || cholesky_.factorize(matrix_);
   }
   return *stiffness_is_semidefinite_;
 }
 
 bool is_semidefinite(const SparseMatrix& a, const SparseMatrix& mass) {
-  return DefinitenessProof({a, mass, {}}).stiffness_is_semidefinite();
+  return DefinitenessProof(a, mass).stiffness_is_semidefinite();
 }
 
 }  // namespace springstab

@@ -18,12 +18,15 @@ class Pieces;
 
 class DefinitenessProof {
  public:
-  /// Scales the matrices so that the mass has a unit diagonal, and keeps the pattern of all of them with the
-  /// entries of each: whoever moves them in has nothing of that twice. Where SparseCholesky finds too many
+  /// Works on the matrices scaled so that the mass has a unit diagonal. Where SparseCholesky finds too many
   /// unknowns the proof is by pieces, which overlap enough for σ I - K to be proved at a σ about `loss` k0
-  /// above k0; without CHOLMOD only diagonally dominant matrices are proved there.
+  /// above k0, and no matrix beside those given is kept; without CHOLMOD only diagonally dominant matrices
+  /// are proved there.
   explicit DefinitenessProof(StructuralMatrices s, double loss = usual_loss);
   static constexpr double usual_loss = 2e-3;
+  /// Of matrices that must outlive it.
+  DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass,
+                    const SparseMatrix* damping = nullptr, double loss = usual_loss);
 
   /// Of a structure whose matrices are distributed: `s` are rows and columns of it, those that `own` pieces
   /// and their neighbours need (Pieces), and `all_of` says whether something is true of everybody, who is
@@ -47,16 +50,30 @@ class DefinitenessProof {
   bool stiffness_is_semidefinite();
 
  private:
-  bool in_pieces(const SparseMatrix& matrix);
-  void form(double c, double a, double b);
+  /// c M - a D - b K.
+  struct Sum {
+    double c, a, b;
+  };
+  /// Of a column of it: the diagonal, the absolute sum, and what its forming may be off by.
+  struct Column {
+    double diagonal = 0, size = 0, error = 0;
+  };
+  struct Columns {
+    Eigen::VectorXd diagonal, size, error;
+  };
+
+  void take_matrices();
+  Column form(const Sum& sum, Eigen::Index j, double* values) const;
+  Columns measure(const Sum& sum) const;
+  void form_whole(const Sum& sum, const Eigen::VectorXd& added);
+  bool in_pieces(const Sum& sum, const Columns& columns);
   bool all_of(bool mine) const { return all_of_ ? all_of_(mine) : mine; }
 
-  SparseMatrix matrix_;                  // of all three's pattern: what was formed last
-  Eigen::VectorXd diagonal_, sizes_;     // its diagonal and absolute row sums
-  Eigen::VectorXd mass_;                 // an entry for each of the matrix's, or where M is diagonal, its
-  Eigen::VectorXd damping_, stiffness_;  // an entry for each of the matrix's; empty without damping
-  bool lumped_;                          // whether M is diagonal
-  Eigen::VectorXd mass_size_, damping_size_, stiffness_size_;  // absolute row sums
+  std::unique_ptr<const StructuralMatrices> own_;
+  std::unique_ptr<const SparseMatrix> widened_;       // K, with an entry wherever one of them has
+  const SparseMatrix *stiffness_, *mass_, *damping_;  // the last: null without damping
+  Eigen::VectorXd root_;                              // 1/√M_ii
+  SparseMatrix matrix_;                               // what is factorized at once
   SparseCholesky cholesky_;
   [[maybe_unused]] double loss_;  // where there is no CHOLMOD
   std::optional<bool> stiffness_is_semidefinite_;

@@ -128,6 +128,28 @@ std::vector<long> dissection_order(const Eigen::SparseMatrix<double>& a) {
   return order;
 }
 
+std::vector<long> largest_balls(const Graph& graph, long nodes, int layers) {
+  constexpr int centres = 8;
+  std::vector<long> most;
+  std::vector<char> seen(graph.size(), 0);
+  for (int c = 0; c < centres; ++c) {
+    std::vector<int> found{static_cast<int>((2 * c + 1L) * graph.size() / (2 * centres))};
+    seen[found[0]] = 1;
+    std::vector<long> ball{1};
+    for (long first = 0, beyond = 0; first < ball.back() && beyond <= layers; beyond += ball.back() > nodes) {
+      for (const long last = ball.back(); first < last; ++first)
+        for (int k = graph.start[found[first]]; k < graph.start[found[first] + 1]; ++k)
+          if (const int other = graph.neighbour[k]; !seen[other]) seen[other] = 1, found.push_back(other);
+      ball.push_back(std::ssize(found));
+    }
+    for (const int node : found) seen[node] = 0;
+    if (most.size() < ball.size()) most.resize(ball.size(), 0);
+    for (std::size_t r = 0; r < most.size(); ++r)
+      most[r] = std::max(most[r], ball[std::min(r, ball.size() - 1)]);
+  }
+  return most;
+}
+
 std::vector<int> parts_of(const Graph& graph, int parts) {
   idx_t nodes = graph.size(), constraints = 1, number = parts, cut = 0;
   std::vector<int> part(nodes, 0);

@@ -23,6 +23,10 @@ Graph graph_of(const Eigen::SparseMatrix<double>& a, int unknowns_a_node);
 /// Old numbers of the unknowns, in the order of elimination; empty where memory ran out.
 std::vector<long> dissection_order(const Eigen::SparseMatrix<double>& a);
 
+/// ball[r]: how many nodes are at most r edges away from a node, the most of some nodes all over the graph;
+/// up to `layers` + 1 beyond the first ball of more than `nodes`, or to where no more are reached.
+std::vector<long> largest_balls(const Graph& graph, long nodes, int layers);
+
 /// The part of each node, of `parts` about equal ones.
 std::vector<int> parts_of(const Graph& graph, int parts);
 

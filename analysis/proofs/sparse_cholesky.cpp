@@ -38,6 +38,7 @@ struct SparseCholesky::Engine {
 #endif
 
   Eigen::Index size = 0;
+  std::optional<double> entries;  // once they are known; nothing else is kept of what is too large
   std::optional<Unblocked> unblocked;
   std::optional<Blocked> blocked;
 };
@@ -50,14 +51,15 @@ bool SparseCholesky::analyze(const SparseMatrix& pattern) {
   Engine& e = *engine_;
   e.size = pattern.rows();
   if (pattern.rows() > unknowns_limit) return false;
-  if (!e.unblocked && !e.blocked) {
+  if (!e.entries) {
     if (pattern.rows() < blocked_from) {
-      e.unblocked.emplace(pattern);
+      e.entries = e.unblocked.emplace(pattern).entries();
     } else {
-      e.blocked.emplace(pattern);
+      e.entries = e.blocked.emplace(pattern).entries();
     }
+    if (*e.entries > entries_limit) e.unblocked.reset(), e.blocked.reset();
   }
-  return entries() <= entries_limit;
+  return *e.entries <= entries_limit;
 }
 
 // A bound e: the factorization is that of A + ΔA with -e diag(A) <= ΔA <= e diag(A).
@@ -78,9 +80,7 @@ double SparseCholesky::error() const {
   return 1.01 * unit_roundoff * (entries() + 2 * static_cast<double>(engine_->size));
 }
 
-double SparseCholesky::entries() const {
-  return engine_->blocked ? engine_->blocked->entries() : engine_->unblocked->entries();
-}
+double SparseCholesky::entries() const { return engine_->entries.value(); }
 
 bool SparseCholesky::factorize(const SparseMatrix& a) {
   if (!analyze(a)) return false;

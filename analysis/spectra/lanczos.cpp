@@ -82,13 +82,15 @@ SymmetricEigenpairs largest_by_lanczos(const LinearOperator& a, const ArpackOpti
   const Eigen::VectorXd start = start_vector(a.size, options.start, options.seed);
   const auto most = static_cast<std::size_t>(40 / std::sqrt(options.tolerance));
   std::vector<double> alpha, beta;
-  std::vector<Eigen::VectorXd> kept;  // of the basis, as far as that goes
+  std::vector<Eigen::VectorXd> kept;  // the basis, where that is small enough
+  bool keeps = with_vector;
   Eigen::VectorXd weights;
   SymmetricEigenpairs found;
   double theta = 0, residual = 0;
   Recurrence forth(a, start);
   for (std::size_t next = 8; alpha.size() < most && !found.converged;) {
-    if (with_vector && std::ssize(kept) * a.size < most_kept) kept.push_back(forth.now());
+    if (keeps && std::ssize(kept) * a.size >= most_kept) keeps = false, kept = {};  // of no use in part
+    if (keeps) kept.push_back(forth.now());
     beta.push_back(forth.step(alpha.emplace_back()));
     if (alpha.size() < next && beta.back() > 0) continue;
     next = alpha.size() + alpha.size() / 8;
@@ -104,11 +106,10 @@ SymmetricEigenpairs largest_by_lanczos(const LinearOperator& a, const ArpackOpti
   found.residuals = {forth.scale() * residual};
   if (!with_vector) return found;
   Eigen::VectorXd vector = Eigen::VectorXd::Zero(a.size);
-  if (std::ssize(kept) >= weights.size()) {
+  if (keeps) {
     for (Eigen::Index i = 0; i < weights.size(); ++i)
       vector += weights[i] * kept[static_cast<std::size_t>(i)];
   } else {
-    kept.clear();
     Recurrence again(a, start);
     double ignored = 0;
     for (Eigen::Index i = 0; i < weights.size(); ++i) {

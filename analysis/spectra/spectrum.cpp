@@ -31,8 +31,13 @@ constexpr double least_accuracy = 1e-6;
 // 1/√M_ii: makes the pencil dimensionless per unknown, whatever the ratio of the masses.
 Eigen::VectorXd inverse_root(const SparseMatrix& mass) { return mass.diagonal().cwiseSqrt().cwiseInverse(); }
 
-double largest_row_sum(const SparseMatrix& a) {
-  return (a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols())).maxCoeff();
+// Absolute row sums of diag(d) A diag(d).
+Eigen::VectorXd scaled_row_sums(const SparseMatrix& a, const Eigen::VectorXd& d) {
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(a.rows());
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      sums[it.row()] += std::abs(d[it.row()] * it.value() * d[j]);
+  return sums;
 }
 
 StiffestMode dense_spectrum(const LinearOperator& s) {
@@ -169,6 +174,20 @@ void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, Defi
   if (pairs.converged) mode.lowest = -pairs.values[0];
 }
 
+// Of a symmetric matrix with this diagonal and these absolute row sums; without its product.
+LinearOperator bounded_by_discs(const Eigen::VectorXd& centres, const Eigen::VectorXd& sums) {
+  const Eigen::VectorXd radii = sums - centres.cwiseAbs();
+  return {centres.size(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+}
+
+auto product_with(BlockSparseMatrix blocks) {
+  return [matrix = std::make_shared<const BlockSparseMatrix>(std::move(blocks))](const Eigen::VectorXd& in,
+                                                                                 Eigen::VectorXd& out) {
+    out.resize(in.size());
+    matrix->multiply(in.data(), out.data());
+  };
+}
+
 // Both calls, on two threads; of their exceptions the first one's comes first.
 template <class First, class Second>
 void both_at_once(const First& first, const Second& second) {
@@ -187,16 +206,11 @@ void both_at_once(const First& first, const Second& second) {
 }  // namespace
 
 LinearOperator symmetric_operator(SparseMatrix a) {
-  const Eigen::VectorXd centres = a.diagonal();
-  const Eigen::VectorXd radii = a.cwiseAbs() * Eigen::VectorXd::Ones(a.cols()) - centres.cwiseAbs();
-  LinearOperator op{a.rows(), {}, (centres - radii).minCoeff(), (centres + radii).maxCoeff()};
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(a.cols());
+  LinearOperator op = bounded_by_discs(a.diagonal(), a.cwiseAbs() * ones);
   if (op.size >= many_unknowns)
     if (std::optional<BlockSparseMatrix> blocks = in_blocks(a)) {
-      op.apply = [matrix = std::make_shared<const BlockSparseMatrix>(std::move(*blocks))](
-                     const Eigen::VectorXd& in, Eigen::VectorXd& out) {
-        out.resize(in.size());
-        matrix->multiply(in.data(), out.data());
-      };
+      op.apply = product_with(std::move(*blocks));
       return op;
     }
   const auto matrix = std::make_shared<const SparseMatrix>(std::move(a));
@@ -214,9 +228,21 @@ LinearOperator symmetric_operator(SparseMatrix a) {
   return op;
 }
 
-// With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ.
+// With a diagonal mass it is a matrix; else L⁻¹ P A Pᵀ L⁻ᵀ with P M Pᵀ = LLᵀ. What becomes blocks has no copy
+// of single numbers beside.
 LinearOperator mass_scaled(const SparseMatrix& a, const SparseMatrix& mass) {
-  if (is_diagonal(mass)) return symmetric_operator(scaled(a, inverse_root(mass)));
+  if (is_diagonal(mass)) {
+    const Eigen::VectorXd root = inverse_root(mass);
+    if (a.rows() >= many_unknowns)
+      if (std::optional<BlockSparseMatrix> blocks = in_blocks(a)) {
+        blocks->scale(root);
+        const Eigen::VectorXd centres = root.cwiseProduct(a.diagonal()).cwiseProduct(root);
+        LinearOperator op = bounded_by_discs(centres, scaled_row_sums(a, root));
+        op.apply = product_with(std::move(*blocks));
+        return op;
+      }
+    return symmetric_operator(scaled(a, root));
+  }
   const auto factor = std::make_shared<Cholesky>(mass);
   return {a.rows(), [factor, &a](const Eigen::VectorXd& in, Eigen::VectorXd& out) {
             out = factor->permutationPinv() * factor->matrixU().solve(in);
@@ -240,7 +266,7 @@ Eigen::MatrixXd as_dense(const LinearOperator& a) {
 Eigen::MatrixXd symmetric_part(const Eigen::MatrixXd& a) { return 0.5 * (a + a.transpose()); }
 
 bool is_below(const StructuralMatrices& s, double sigma) {
-  return DefinitenessProof({s.stiffness, s.mass, {}}).holds(sigma, 0, 1);
+  return DefinitenessProof(s.stiffness, s.mass).holds(sigma, 0, 1);
 }
 
 StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options) {
@@ -255,7 +281,7 @@ StiffestMode estimated_stiffest_mode(const StructuralMatrices& s, const ArpackOp
 
 void find_lowest(const StructuralMatrices& s, const ArpackOptions& options, StiffestMode& mode) {
   if (!mode.converged || !s.symmetric) return;
-  DefinitenessProof proof({s.stiffness, s.mass, {}});
+  DefinitenessProof proof(s.stiffness, s.mass);
   find_lowest(s, options, proof, mode);
 }
 
@@ -270,24 +296,27 @@ void tighten_bound(StiffestMode& mode, double gap, const std::function<bool(doub
 
 StiffestMode stiffest_mode(const StructuralMatrices& s, const ArpackOptions& options, double loss) {
   StiffestMode mode;
-  std::optional<DefinitenessProof> proof;  // of D's pattern too, which later proofs about `s` then share
+  const SparseMatrix* const damping =
+      s.has_damping() ? &s.damping : nullptr;  // later proofs share its pattern
+  std::optional<DefinitenessProof> proof;
   const auto find = [&] { mode = estimated_stiffest_mode(s, options); };
-  if (s.symmetric && s.size() >= many_unknowns && loop_threads() > 1) {
+  const bool factorized_at_once = s.size() >= many_unknowns && s.size() <= SparseCholesky::unknowns_limit;
+  if (s.symmetric && factorized_at_once && loop_threads() > 1) {
     both_at_once(find, [&] {
-      proof.emplace(s, loss);
+      proof.emplace(s.stiffness, s.mass, damping, loss);
       if (proof->factorizes()) proof->stiffness_is_semidefinite();
     });
   } else {
     find();
   }
   if (is_diagonal(s.mass)) {
-    const SparseMatrix matrix = scaled(s.stiffness, inverse_root(s.mass));
-    mode.gershgorin = largest_row_sum(matrix) * (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
+    mode.gershgorin = scaled_row_sums(s.stiffness, inverse_root(s.mass)).maxCoeff() *
+                      (1 + 8 * unit_roundoff * static_cast<double>(s.size()));
     mode.upper_bound = mode.gershgorin;
   }
   if (!mode.converged || !s.symmetric) return mode;
 
-  if (!proof) proof.emplace(s, loss);
+  if (!proof) proof.emplace(s.stiffness, s.mass, damping, loss);
   find_lowest(s, options, *proof, mode);
   const double scale = std::abs(mode.value);
   if (scale == 0) return mode;

@@ -149,17 +149,17 @@ void Subject::build_scene(const SceneDescription& description) {
   if (std::holds_alternative<Grid>(description.geometry)) {
     Grid grid = std::get<Grid>(description.geometry);
     grid.spacing *= description.scale;
-    faces_ = grid_faces(grid);
+    grid_ = grid;
     unused_diagonals_ = grid.diagonals == Diagonals::alternating &&
                         !std::holds_alternative<ClothMaterial>(description.material);
     return visit_cloth(description.material, "--grid", [&](const auto& material) {
-      const auto cloth = make(grid, material);
-      place(cloth, description, pinned_particles(description.pins, grid), "--grid");
+      auto cloth = make(grid, material);
+      place(std::move(cloth), description, pinned_particles(description.pins, grid), "--grid");
     });
   }
   const std::string& path = std::get<std::string>(description.geometry);
-  const auto place_mesh = [&](const auto& cloth) {
-    place(cloth, description, pinned_particles(description.pins, *mesh_file_, faces_), path);
+  const auto place_mesh = [&](auto cloth) {
+    place(std::move(cloth), description, pinned_particles(description.pins, *mesh_file_, faces_), path);
   };
   AnyMesh mesh = read_mesh(path);
   if (auto* tets = std::get_if<TetMesh>(&mesh)) {
@@ -191,7 +191,7 @@ void Subject::place(Cloth made, const SceneDescription& description, std::vector
   visit_elements_ = [shared](const auto& at, const ElementVisitor& visit) {
     visit_elements(*shared, at, visit);
   };
-  if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = cloth;
+  if constexpr (std::is_same_v<Cloth, SpringNet>) net_ = shared;
   if constexpr (std::is_same_v<Cloth, TriangleCloth>)
     if (mesh_file_) {
       mesh_file_->rest_shape = cloth.rest_shape;
@@ -252,7 +252,7 @@ void Subject::expect_apart(const ContactDescription& description) {
           first_particle_inside(contact_->obstacles, contact_->thickness, scene()->positions(x)))
     fail(*found, (mesh_file_ ? "vertex " : "particle ") + std::to_string(number_in_file(found->index)),
          contact_->thickness > 0 ? "them apart by the thickness" : "them apart");
-  if (const auto found = first_face_inside(contact_->obstacles, vertices(x), faces_))
+  if (const auto found = first_face_inside(contact_->obstacles, vertices(x), faces()))
     fail(*found, "face " + std::to_string(found->index), "them apart");
   if (!contact_->has_surfaces()) return;
   const auto [surface, names] = contact_surface();

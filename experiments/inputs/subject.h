@@ -39,7 +39,7 @@ class Subject : public Model {
 
   /// Faces for pictures, those of the mesh file (of a solid its surface) or of a grid's cells: numbers of
   /// vertices(); none for matrices.
-  const Faces& faces() const { return faces_; }
+  const Faces& faces() const;
 
   /// Of a scene, where the vertices of faces() are: the particles, or all vertices of the mesh file in its
   /// order. One that was merged is where its particle is; an unreferenced one stays where it started.
@@ -85,8 +85,9 @@ class Subject : public Model {
   /// Of a scene whose unknowns are x; nothing for matrices. Refers to this object.
   std::optional<ElementsOf> elements(const Vector& x) const;
 
-  /// Of a scene of springs alone: matrices that no pose and no contact exceeds (solvers/scene/every_pose.h).
-  std::optional<StructuralMatrices> every_pose() const;
+  /// Of a scene of springs alone, what makes the matrices that no pose and no contact exceeds
+  /// (solvers/scene/every_pose.h), also when this object is gone; else nothing.
+  std::function<StructuralMatrices()> every_pose() const;
 
  private:
   void build_scene(const SceneDescription& description);
@@ -99,9 +100,10 @@ class Subject : public Model {
   int number_in_file(int particle) const;
   void build_matrices(const InputOptions& options, bool any_matrices);
 
-  Faces faces_;
+  mutable Faces faces_;       // of a grid none before they are asked for
+  std::optional<Grid> grid_;  // where the scene is made of one
   std::optional<MeshFile> mesh_file_;
-  std::optional<SpringNet> net_;  // of a scene of springs
+  std::shared_ptr<const SpringNet> net_;  // of a scene of springs
   std::vector<int> pinned_;
   std::vector<long> kept_;  // of matrices
   std::function<Model(const std::vector<int>& held)> make_model_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "experiments/inputs/grid.h"
 #include "experiments/inputs/subject.h"
 #include "solvers/contact/penalty.h"
 #include "solvers/scene/every_pose.h"
@@ -24,7 +25,7 @@ std::pair<ClothSurface, SurfaceNames> Subject::contact_surface() const {
   SurfaceNames names;
   const std::vector<Eigen::Vector3d> places = scene()->positions(scene()->rest_state().x);
   for (const int i : pinned_) surface.pinned.push_back(places[i]);
-  for (int f = 0; f < std::ssize(faces_); ++f)
+  for (int f = 0; f < std::ssize(faces()); ++f)
     for (std::size_t c = 2; c < faces_[f].size(); ++c) {
       std::array<int, 3> triangle{faces_[f][0], faces_[f][c - 1], faces_[f][c]};
       for (int& corner : triangle) corner = node[mesh_file_ ? mesh_file_->repair.vertex[corner] : corner];
@@ -74,11 +75,18 @@ std::optional<ElementsOf> Subject::elements(const Vector& x) const {
   return elements;
 }
 
-std::optional<StructuralMatrices> Subject::every_pose() const {
-  if (!net_) return std::nullopt;
-  StructuralMatrices all = springstab::every_pose(*net_, pinned_, {damping().d0, damping().alpha});
-  if (const auto contact = contact_bound()) all = in_any_contact(std::move(all), *contact, damping().alpha);
-  return all;
+std::function<StructuralMatrices()> Subject::every_pose() const {
+  if (!net_) return {};
+  const RayleighDamping rayleigh{damping().d0, damping().alpha};
+  return [net = net_, pinned = pinned_, rayleigh, contact = contact_bound()] {
+    StructuralMatrices all = springstab::every_pose(*net, pinned, rayleigh);
+    return contact ? in_any_contact(std::move(all), *contact, rayleigh.alpha) : all;
+  };
+}
+
+const Faces& Subject::faces() const {
+  if (faces_.empty() && grid_) faces_ = grid_faces(*grid_);
+  return faces_;
 }
 
 std::optional<ContactBound> Subject::contact_bound() const {

@@ -79,7 +79,7 @@ OwnedIS rows_around(const System& system, int layers) {
 }
 
 // The parts of a rank's own nodes; they are the nodes [first, last) of `around`.
-std::vector<int> own_parts(const Graph& around, int first, int last) {
+std::vector<int> own_parts(const Graph& around, int first, int last, int layers) {
   Graph own;
   for (int node = first; node < last; ++node) {
     for (int k = around.start[node]; k < around.start[node + 1]; ++k)
@@ -87,7 +87,8 @@ std::vector<int> own_parts(const Graph& around, int first, int last) {
         own.neighbour.push_back(other - first);
     own.start.push_back(static_cast<int>(own.neighbour.size()));
   }
-  return parts_of(own, (own.size() + Pieces::usual_particles - 1) / Pieces::usual_particles);
+  const int particles = Pieces::cheapest_particles(around, layers);
+  return parts_of(own, (own.size() + particles - 1) / particles);
 }
 
 // `own`, a number for each of a rank's nodes, as all ranks together have it, at the rows chosen.
@@ -154,7 +155,7 @@ void DistributedProof::take_own_pieces(double loss) {
   PetscInt first = 0;
   petsc(ISLocate(rows, own.first, &first));
   const int first_node = first / group, last_node = first_node + (own.last - own.first) / group;
-  const std::vector<int> mine = own_parts(graph, first_node, last_node);
+  const std::vector<int> mine = own_parts(graph, first_node, last_node, layers);
   const int count = mine.empty() ? 0 : *std::ranges::max_element(mine) + 1;
   constexpr double most_parts = 1 << 24;  // of a rank
   std::vector<double> names;

@@ -3,30 +3,35 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace springstab {
 
+// Columns are put into their rows, then sorted and made unique row by row: no list of pairs beside the one
+// that is given.
 BlockPattern::BlockPattern(int rows, std::span<const std::pair<int, int>> couplings) {
-  std::vector<std::pair<int, int>> entries;
-  entries.reserve(rows + couplings.size());
-  for (int i = 0; i < rows; ++i) entries.emplace_back(i, i);
+  row_start_.assign(rows + 1, 0);
   for (const auto& [i, j] : couplings) {
     if (i < 0 || j < 0 || i >= rows || j >= rows)
       throw std::invalid_argument("coupling (" + std::to_string(i) + ", " + std::to_string(j) +
                                   ") is outside a matrix of " + std::to_string(rows) + " block rows");
-    entries.emplace_back(std::max(i, j), std::min(i, j));
+    ++row_start_[std::max(i, j) + 1];
   }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-
-  row_start_.assign(rows + 1, 0);
-  column_.reserve(entries.size());
-  for (const auto& [i, j] : entries) {
-    column_.push_back(j);
-    ++row_start_[i + 1];
-    bandwidth_ = std::max(bandwidth_, i - j);
+  for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i] + 1;  // the diagonal
+  column_.resize(row_start_.back());
+  std::vector<long> next(row_start_.begin(), row_start_.end() - 1);
+  for (const auto& [i, j] : couplings) column_[next[std::max(i, j)]++] = std::min(i, j);
+  long end = 0;
+  for (int i = 0; i < rows; ++i) {
+    column_[next[i]++] = i;
+    const auto first = column_.begin() + std::exchange(row_start_[i], end), last = column_.begin() + next[i];
+    std::sort(first, last);
+    end = std::copy(first, std::unique(first, last), column_.begin() + end) - column_.begin();
+    bandwidth_ = std::max(bandwidth_, i - column_[row_start_[i]]);
   }
-  for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
+  row_start_[rows] = end;
+  column_.resize(end);
+  column_.shrink_to_fit();
 }
 
 long BlockPattern::find(int i, int j) const {

@@ -1,6 +1,7 @@
 #include "solvers/linear/block_sparse_matrix.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace springstab {
 
@@ -34,19 +35,41 @@ void BlockSparseMatrix::add_from_below(const double* in, const RowPart& part) co
   }
 }
 
-Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {
-  std::vector<Eigen::Triplet<double>> triplets;
-  triplets.reserve(2 * value_.size());
+void BlockSparseMatrix::scale(const Eigen::VectorXd& d) {
+  for (int i = 0; i < rows(); ++i)
+    for (long k = row_begin(i); k <= diagonal(i); ++k)
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) {
+          double& entry = value_[9 * k + 3 * r + c];
+          entry = d[3 * i + r] * entry * d[3 * column(k) + c];
+        }
+}
+
+// Calls visit(row, column, value) for what is not zero, so that the rows of a column ascend.
+template <class Visit>
+void BlockSparseMatrix::visit_entries(const Visit& visit) const {
   for (int i = 0; i < rows(); ++i)
     for (long k = row_begin(i); k <= diagonal(i); ++k)
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
           if (const double v = value_[9 * k + 3 * r + c]; v != 0) {
-            triplets.emplace_back(3 * i + r, 3 * column(k) + c, v);
-            if (column(k) != i) triplets.emplace_back(3 * column(k) + c, 3 * i + r, v);
+            visit(3 * i + r, 3 * column(k) + c, v);
+            if (column(k) != i) visit(3 * column(k) + c, 3 * i + r, v);
           }
+}
+
+// Without a list of all entries, which would take more than the matrix.
+Eigen::SparseMatrix<double> BlockSparseMatrix::to_sparse() const {
   Eigen::SparseMatrix<double> matrix(3 * rows(), 3 * rows());
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  std::vector<int> next(static_cast<std::size_t>(matrix.cols()) + 1, 0);  // of each column
+  visit_entries([&](int, int column, double) { ++next[column + 1]; });
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::copy(next.begin(), next.end(), matrix.outerIndexPtr());
+  matrix.resizeNonZeros(next.back());
+  visit_entries([&](int row, int column, double value) {
+    matrix.innerIndexPtr()[next[column]] = row;
+    matrix.valuePtr()[next[column]++] = value;
+  });
   return matrix;
 }
 

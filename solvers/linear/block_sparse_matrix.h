@@ -46,6 +46,9 @@ class BlockSparseMatrix {
 
   void set_zero();
 
+  /// Becomes diag(d) A diag(d).
+  void scale(const Eigen::VectorXd& d);
+
   /// out = A in; both of length 3·rows(), not overlapping. Moves 76 bytes per block and 120 per row. Not for
   /// two callers at a time: it works in memory of the matrix's own.
   void multiply(const double* in, double* out) const;
@@ -73,6 +76,9 @@ class BlockSparseMatrix {
   std::vector<double> value_;    // 9 per block, and one to read beyond the last
   mutable Eigen::VectorXd sum_;  // of a product, what the rows below have added: 4 per row, zeros in between
   mutable RowParts parts_;
+
+  template <class Visit>
+  void visit_entries(const Visit& visit) const;
 
   enum class Above { within, beyond };  // whether rows have blocks in the columns before their own part
   template <Above above, class Take>

@@ -1,6 +1,7 @@
 #include "solvers/linear/structural_matrices.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -199,6 +200,13 @@ SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d) {
   SparseMatrix b = a;
   scale(b, d);
   return b;
+}
+
+int most_in_a_column(const SparseMatrix& a) {
+  int most = 0;
+  for (Eigen::Index j = 0; j < a.cols(); ++j)
+    most = std::max(most, a.outerIndexPtr()[j + 1] - a.outerIndexPtr()[j]);
+  return most;
 }
 
 bool is_diagonal(const SparseMatrix& a) {

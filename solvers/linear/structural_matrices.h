@@ -55,6 +55,9 @@ SparseMatrix lumped_mass(std::span<const double> mass);
 void scale(SparseMatrix& a, const Eigen::VectorXd& d);
 SparseMatrix scaled(const SparseMatrix& a, const Eigen::VectorXd& d);
 
+/// Of a compressed matrix.
+int most_in_a_column(const SparseMatrix& a);
+
 /// Whether nothing is stored off the diagonal.
 bool is_diagonal(const SparseMatrix& a);
 

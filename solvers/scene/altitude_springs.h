@@ -80,6 +80,7 @@ class AltitudeSprings final : public ElasticTerm {
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
   void bind(const SharedPattern& pattern) override { places_.bind(altitudes_->elements(), pattern); }
+  void unbind() override { places_.unbind(); }
 
  private:
   std::shared_ptr<const Altitudes> altitudes_;
@@ -98,6 +99,7 @@ class AltitudeDamping final : public DampingTerm {
   Couplings couplings() const override { return altitudes_->elements().couplings(); }
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;
   void bind(const SharedPattern& pattern) override { places_.bind(altitudes_->elements(), pattern); }
+  void unbind() override { places_.unbind(); }
 
  private:
   std::shared_ptr<const Altitudes> altitudes_;

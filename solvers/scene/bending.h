@@ -33,6 +33,7 @@ class Bending final : public ElasticTerm {
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
   void bind(const SharedPattern& pattern) override { places_.bind(hinges_->elements(), pattern); }
+  void unbind() override { places_.unbind(); }
 
  private:
   template <bool with_force>

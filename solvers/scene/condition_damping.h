@@ -26,6 +26,7 @@ class StretchShearDamping final : public DampingTerm {
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
   void bind(const SharedPattern& pattern) override { places_.bind(triangles_->elements(), pattern); }
+  void unbind() override { places_.unbind(); }
 
  private:
   std::shared_ptr<const TriangleConditions> triangles_;
@@ -48,6 +49,7 @@ class BendingDamping final : public DampingTerm {
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
   void bind(const SharedPattern& pattern) override { places_.bind(hinges_->elements(), pattern); }
+  void unbind() override { places_.unbind(); }
 
  private:
   std::shared_ptr<const HingeAngles> hinges_;

@@ -199,14 +199,16 @@ class Elements {
     });
   }
 
-  /// The pairs of free particles within each element.
+  /// The pairs of free particles within the elements, of those in a row that have the same ones but once.
   Couplings couplings() const {
     Couplings pairs;
-    for (int k = 0; k < size_; ++k)
+    for (int k = 0; k < size_; ++k) {
+      if (k > 0 && std::ranges::is_permutation(particles_[k], particles_[k - 1])) continue;
       for (int c = 0; c < corners; ++c)
         for (int d = c + 1; d < corners; ++d)
           if (is_free(particles_[k][c]) && is_free(particles_[k][d]))
             pairs.emplace_back(particles_[k][c], particles_[k][d]);
+    }
     return pairs;
   }
 
@@ -255,6 +257,8 @@ class BlockPlaces {
         places_.push_back(look_up(elements, particles, *pattern));
     pattern_ = pattern;
   }
+
+  void unbind() { *this = {}; }
 
   /// matrix += the blocks of a batch of elements, between free particles, in those rows that are `mine`.
   void add(const Elements<corners>& elements, int batch, const CornerBlocks<corners>& blocks,

@@ -22,8 +22,12 @@ template <class Terms>
 Couplings all_couplings(const Terms& terms) {
   Couplings all;
   for (const auto& term : terms) {
-    const Couplings some = term->couplings();
-    all.insert(all.end(), some.begin(), some.end());
+    Couplings some = term->couplings();
+    if (all.empty()) {
+      all = std::move(some);
+    } else {
+      all.insert(all.end(), some.begin(), some.end());
+    }
   }
   return all;
 }
@@ -83,6 +87,9 @@ void Scene::number_particles(const std::vector<Eigen::Vector3d>& rest, const std
     throw std::invalid_argument("all particles are pinned, expected at least one that can move");
 
   number_.resize(n);
+  rest_.reserve(3 * static_cast<std::size_t>(free_count_));
+  mass_.reserve(static_cast<std::size_t>(free_count_));
+  inverse_mass_.reserve(mass_.capacity());
   int next_free = 0, next_pinned = free_count_;
   for (int i = 0; i < n; ++i) {
     append(is_pinned[i] ? pinned_ : rest_, rest[i]);
@@ -100,6 +107,12 @@ void Scene::make_patterns() {
   if (terms_.damping.empty()) return;
   damping_pattern_ = std::make_shared<BlockPattern>(free_count_, all_couplings(terms_.damping));
   for (const auto& term : terms_.damping) term->bind(damping_pattern_);
+}
+
+void Scene::forget_matrices() {
+  stiffness_pattern_ = damping_pattern_ = nullptr;
+  for (const auto& term : terms_.elastic) term->unbind();
+  for (const auto& term : terms_.damping) term->unbind();
 }
 
 double Scene::total_free_mass() const {

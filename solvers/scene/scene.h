@@ -69,6 +69,8 @@ class Scene final : public System {
 
   /// Whether a linearization was asked for: until then there is no matrix.
   bool has_matrices() const { return stiffness_pattern_ != nullptr; }
+  /// Frees what was looked up for the next one.
+  void forget_matrices();
 
   /// The free particles at rest, not moving.
   State<Vector> rest_state() const;

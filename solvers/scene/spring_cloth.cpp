@@ -163,6 +163,9 @@ SpringNet make_net(const Grid& grid, const SpringMaterial& material) {
     SpringKind kind;
   } neighbours[] = {{0, 1, SpringKind::structural}, {0, 2, SpringKind::bending}, {1, -1, SpringKind::shear},
                     {1, 0, SpringKind::structural}, {1, 1, SpringKind::shear},   {2, 0, SpringKind::bending}};
+  const auto kinds =
+      std::ranges::count_if(neighbours, [&](const auto& to) { return of(material.stiffness, to.kind) > 0; });
+  net.springs.reserve(net.mass.size() * static_cast<std::size_t>(kinds));
   for (int i = 0; i < grid.rows; ++i)
     for (int j = 0; j < grid.columns; ++j)
       for (const auto& to : neighbours) {

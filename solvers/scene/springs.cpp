@@ -79,7 +79,6 @@ std::vector<Spring> ParticlePairs::in_runs(std::vector<Spring> springs) {
 
 ParticlePairs::ParticlePairs(const std::vector<Spring>& springs, int free_count)
     : size_(static_cast<int>(springs.size())), free_count_(free_count) {
-  incident_start_.assign(free_count + 1, 0);
   for (int k = 0; k < size_; ++k) {
     const auto [i, j] = std::pair(springs[k].i, springs[k].j);
     const bool new_batch = k % batch_size == 0;
@@ -91,36 +90,56 @@ ParticlePairs::ParticlePairs(const std::vector<Spring>& springs, int free_count)
     } else {
       runs_.push_back({i, j, 1});
     }
-    for (const int end : {i, j})
-      if (end < free_count) ++incident_start_[end + 1];
   }
   run_start_.push_back(static_cast<int>(runs_.size()));
+}
 
+template <class Visit>
+void ParticlePairs::visit_pairs(const Visit& visit) const {
+  int pair = 0;
+  for (const Run& run : runs_)
+    for (int k = 0; k < run.count; ++k) visit(pair++, run.i + k, run.j + k);
+}
+
+void ParticlePairs::prepare_blocks() const {
+  if (!kept_.empty()) return;
+  incident_start_.assign(free_count_ + 1, 0);
+  visit_pairs([&](int, int i, int j) {
+    for (const int end : {i, j})
+      if (end < free_count_) ++incident_start_[end + 1];
+  });
   std::partial_sum(incident_start_.begin(), incident_start_.end(), incident_start_.begin());
   incident_.resize(incident_start_.back());
   std::vector<long> next = incident_start_;
-  for (int k = 0; k < size_; ++k) {
-    const auto [i, j] = std::pair(springs[k].i, springs[k].j);
-    if (i < free_count) incident_[next[i]++] = {k, j};
-    if (j < free_count) incident_[next[j]++] = {k, i};
-  }
-  kept_.resize(springs.size());
+  visit_pairs([&](int pair, int i, int j) {
+    if (i < free_count_) incident_[next[i]++] = {pair, j};
+    if (j < free_count_) incident_[next[j]++] = {pair, i};
+  });
+  kept_.resize(static_cast<std::size_t>(size_));
 }
 
 Couplings ParticlePairs::couplings() const {
   Couplings pairs;
-  for (const Run& run : runs_)
-    for (int k = 0; k < run.count && std::max(run.i, run.j) < free_count_; ++k)
-      pairs.emplace_back(run.i + k, run.j + k);
+  pairs.reserve(static_cast<std::size_t>(size_));
+  visit_pairs([&](int, int i, int j) {
+    if (std::max(i, j) < free_count_) pairs.emplace_back(i, j);
+  });
   return pairs;
 }
 
 void ParticlePairs::bind(const SharedPattern& pattern) {
+  prepare_blocks();
   pattern_ = pattern;
   place_.clear();
+  place_.reserve(incident_.size());
   for (int i = 0; i < free_count_; ++i)
     for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m)
       place_.push_back(find_place(*pattern, i, incident_[m].other));
+}
+
+void ParticlePairs::unbind() {
+  pattern_ = nullptr;
+  place_ = {}, incident_start_ = {}, incident_ = {}, kept_ = {};
 }
 
 template <class At>
@@ -190,6 +209,8 @@ void ParticlePairs::add_kept_blocks(BlockSparseMatrix& matrix) const {
 }
 
 Springs::Springs(const std::vector<Spring>& springs, int free_count) : pairs_(springs, free_count) {
+  stiffness_.reserve(springs.size());
+  rest_length_.reserve(springs.size());
   for (const Spring& s : springs) {
     stiffness_.push_back(s.stiffness);
     rest_length_.push_back(s.rest_length);
@@ -252,6 +273,7 @@ void Springs::add_damped_force(const ParticleField& x, const double* v, double a
 template <class StiffnessOf>
 void Springs::add_blocks(const ParticleField& x, BlockSparseMatrix& matrix,
                          const StiffnessOf& block_of) const {
+  pairs_.prepare_blocks();
   pairs_.for_each_batch_at_once([&](int begin, int count) {
     alignas(64) ParticlePairs::Vectors d;
     alignas(64) ParticlePairs::Numbers a, b;
@@ -292,6 +314,7 @@ void AxialDamping::add_force(const ParticleField& x, const ParticleField& v, dou
 }
 
 void AxialDamping::add_damping(const ParticleField& x, BlockSparseMatrix& damping) const {
+  pairs_.prepare_blocks();
   pairs_.for_each_batch_at_once([&](int begin, int count) {
     alignas(64) ParticlePairs::Vectors d;
     alignas(64) ParticlePairs::Numbers a, b;
@@ -307,6 +330,7 @@ void AxialDamping::add_damping(const ParticleField& x, BlockSparseMatrix& dampin
 
 SceneTerms make_terms(const SpringNet& net, const std::vector<int>& number, int free_count) {
   std::vector<Spring> elastic, damped;
+  elastic.reserve(net.springs.size());
   for (Spring s : net.springs) {
     s.i = number[s.i];
     s.j = number[s.j];
@@ -316,9 +340,11 @@ SceneTerms make_terms(const SpringNet& net, const std::vector<int>& number, int 
   }
   SceneTerms terms;
   if (!elastic.empty())
-    terms.elastic.push_back(std::make_unique<Springs>(ParticlePairs::in_runs(elastic), free_count));
+    terms.elastic.push_back(
+        std::make_unique<Springs>(ParticlePairs::in_runs(std::move(elastic)), free_count));
   if (!damped.empty())
-    terms.damping.push_back(std::make_unique<AxialDamping>(ParticlePairs::in_runs(damped), free_count));
+    terms.damping.push_back(
+        std::make_unique<AxialDamping>(ParticlePairs::in_runs(std::move(damped)), free_count));
   return terms;
 }
 

@@ -38,6 +38,8 @@ class ParticlePairs {
   int size() const { return size_; }
   Couplings couplings() const;
   void bind(const SharedPattern& pattern);
+  /// Frees all that blocks take.
+  void unbind();
 
   /// Calls work(begin, count) for every batch, one after another.
   template <class Work>
@@ -63,6 +65,8 @@ class ParticlePairs {
   /// particles, row by row of the matrix: to scatter them pair by pair misses the caches too often.
   void keep(const Numbers& a, const Numbers& b, const Vectors& u, int begin, int count) const;
   void add_kept_blocks(BlockSparseMatrix& matrix) const;
+  /// Makes room for them, before.
+  void prepare_blocks() const;
 
  private:
   static constexpr double pair_cost = 5;  // [ns]
@@ -72,6 +76,9 @@ class ParticlePairs {
     int i, j, count;
   };
 
+  /// Calls visit(pair, i, j) for all of them.
+  template <class Visit>
+  void visit_pairs(const Visit& visit) const;
   template <class At>
   void gather_from(const At& at, int begin, Vectors& out) const;
   std::span<const Run> runs(int begin) const {
@@ -94,10 +101,11 @@ class ParticlePairs {
   struct Incident {
     int pair, other;
   };
-  SharedPattern pattern_;             // that places are known of
-  std::vector<long> incident_start_;  // the pairs of each free particle, in compressed rows
-  std::vector<Incident> incident_;
+  SharedPattern pattern_;    // that places are known of
   std::vector<long> place_;  // of each incident pair in the pattern
+  // Of blocks, none before they are asked for:
+  mutable std::vector<long> incident_start_;  // the pairs of each free particle, in compressed rows
+  mutable std::vector<Incident> incident_;
   mutable std::vector<Kept> kept_;
   mutable ParticleParts parts_;
 };
@@ -136,6 +144,7 @@ class Springs final : public ElasticTerm {
   void add_damped_force(const ParticleField& x, const double* v, double alpha, double* force) const override;
   Couplings couplings() const override { return pairs_.couplings(); }
   void bind(const SharedPattern& pattern) override { pairs_.bind(pattern); }
+  void unbind() override { pairs_.unbind(); }
   void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
   /// Without the transverse stiffness k_s (1 - l0/l) where a spring is shorter than at rest.
   void add_projected_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const override;
@@ -158,6 +167,7 @@ class AxialDamping final : public DampingTerm {
   void add_force(const ParticleField& x, const ParticleField& v, double* force) const override;
   Couplings couplings() const override { return pairs_.couplings(); }
   void bind(const SharedPattern& pattern) override { pairs_.bind(pattern); }
+  void unbind() override { pairs_.unbind(); }
   void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const override;
 
  private:

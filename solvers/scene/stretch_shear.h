@@ -43,6 +43,7 @@ class StretchShear final : public ElasticTerm {
   /// Looks up once where the blocks are in a matrix that outlives this term; other matrices are filled
   /// slowly.
   void bind(const SharedPattern& pattern) override { places_.bind(triangles_->elements(), pattern); }
+  void unbind() override { places_.unbind(); }
 
  private:
   template <bool with_force>

@@ -56,8 +56,9 @@ class ElasticTerm {
   }
   virtual Couplings couplings() const = 0;
   /// Lets a term look up where its blocks are: called once, with the pattern of the matrices that
-  /// add_stiffness will be given.
+  /// add_stiffness will be given; or after `unbind`, which frees what that took.
   virtual void bind(const SharedPattern&) {}
+  virtual void unbind() {}
   /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
   virtual void add_stiffness(const ParticleField& x, BlockSparseMatrix& stiffness) const = 0;
   /// stiffness += a positive semidefinite matrix that is K(x) wherever that is positive semidefinite element
@@ -76,6 +77,7 @@ class DampingTerm {
   virtual Couplings couplings() const = 0;
   /// Likewise with the pattern of those that add_damping will be given.
   virtual void bind(const SharedPattern&) {}
+  virtual void unbind() {}
   /// damping += C(x) [N·s/m]. The change of C with x is neglected, as everywhere.
   virtual void add_damping(const ParticleField& x, BlockSparseMatrix& damping) const = 0;
 };

@@ -159,7 +159,10 @@ void KeptPairs::cover(PlaceList x0, PlaceList x1) {
   else
     find_all(x0, x1);
   const float now = come_nearer(x0, x0);
-  for (PairList& list : found_) list.set_back(now);
+  for (PairList& list : found_) {
+    list.sort(static_cast<int>(std::max({vertices_.size(), edges_.size(), faces_.size()})));
+    list.set_back(now);
+  }
   nearer_ = 0;
 }
 
@@ -312,12 +315,14 @@ double KeptPairs::nearer_on_way(PlaceList x0, PlaceList x1) const {
   return (high - low).matrix().norm();
 }
 
-// Until when a pair must be clear to be so all the way from x0 to x1. The last places are x0 then.
+// Until when a pair must be clear to be so all the way from x0 to x1, which is where the last places are
+// then.
 float KeptPairs::come_nearer(PlaceList x0, PlaceList x1) {
-  nearer_ += nearer_on_way(last_, x0);
-  std::copy_n(x0.begin(), last_.size(), last_.begin());
-  const double in_step = x0.data() == x1.data() ? 0 : nearer_on_way(x0, x1);
-  return static_cast<float>((nearer_ + in_step) * beyond_rounding);
+  const double after = nearer_ + nearer_on_way(last_, x1),
+               before = x0.data() == x1.data() ? after : nearer_ + nearer_on_way(last_, x0);
+  nearer_ = after;
+  std::copy_n(x1.begin(), last_.size(), last_.begin());
+  return static_cast<float>(std::max(before, after) * beyond_rounding);
 }
 
 // The least gap of a pair along its direction in a step; until when it is clear is known then.
@@ -326,9 +331,9 @@ double KeptPairs::gap_in_step(PairKind kind, const std::array<int, 4>& p, KeptPa
   ++counts_.tested;
   const double clear = (beyond_rounding + least_apart) * distances_.reach;
   const Eigen::Vector3d n = kept.normal.cast<double>();
-  const double gap = gap_along(n, kind, p, x0);
+  const double gap = gap_along(n, kind, p, x1);
   if (gap > clear) kept.clear_until = static_cast<float>((nearer_ + gap - clear) / beyond_rounding);
-  return x0.data() == x1.data() ? gap : std::min(gap, gap_along(n, kind, p, x1));
+  return x0.data() == x1.data() ? gap : std::min(gap, gap_along(n, kind, p, x0));
 }
 
 bool KeptPairs::is_apart(double gap, double distance) const {

@@ -108,7 +108,7 @@ class KeptPairs {
   std::array<PairList, 2> found_;                     // of each kind
   std::array<std::vector<KeptPair>, 2> adjacent_;     // likewise, of faces that share a particle
   std::vector<Eigen::Vector3d> ways_from_, ways_to_;  // of particles
-  std::vector<Eigen::Vector3d> last_;                 // where they were as the last step began
+  std::vector<Eigen::Vector3d> last_;                 // where they were when pairs were last gone through
   double nearer_ = 0;  // by how much two may have come nearer until then, since pairs were found [m]
   PairCounts counts_;
 };

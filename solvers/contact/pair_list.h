@@ -1,4 +1,5 @@
-// Pairs of parts, each with a direction in which they were apart and until when that is clear without a look.
+// Pairs of parts, each with a direction in which they were apart and until when that is clear without a look,
+// found in any order and then sorted, by counting: in time proportional to their number.
 // When is how far anything may have come nearer to anything else; pairs are looked after in blocks, so that
 // those that are clear for long cost next to nothing.
 #pragma once
@@ -19,20 +20,18 @@ struct KeptPair {
 
 class PairList {
  public:
-  void clear() {
-    pairs_.clear();
-    wakes_.clear();
-  }
-  void add(int i, int j, const Eigen::Vector3d& normal) {
-    pairs_.push_back({{i, j}, normal.cast<float>()});
-    wake();
-  }
+  void clear() { pairs_.clear(); }
+  void add(int i, int j, const Eigen::Vector3d& normal) { pairs_.push_back({{i, j}, normal.cast<float>()}); }
   std::size_t size() const { return pairs_.size(); }
   template <class Is>
   void remove_if(const Is& is) {
     std::erase_if(pairs_, is);
-    wakes_.clear();
-    wake();
+  }
+  /// By the first number, then by the second; both are below `count`. After pairs have been added or removed.
+  void sort(int count) {
+    sort_by(1, count);
+    sort_by(0, count);
+    wakes_.assign((pairs_.size() + of_block - 1) / of_block, -std::numeric_limits<float>::infinity());
   }
   /// What was `now` is 0 from here on.
   void set_back(float now) {
@@ -57,13 +56,18 @@ class PairList {
  private:
   static constexpr std::size_t of_block = 64;
 
-  // The last block, and those that are missing.
-  void wake() {
-    if (!wakes_.empty()) wakes_.back() = -std::numeric_limits<float>::infinity();
-    wakes_.resize((pairs_.size() + of_block - 1) / of_block, -std::numeric_limits<float>::infinity());
+  // Those with one number stay in the order they have.
+  void sort_by(int which, int count) {
+    begins_.assign(static_cast<std::size_t>(count) + 1, 0);
+    for (const KeptPair& pair : pairs_) ++begins_[pair.parts[which] + 1];
+    for (int i = 0; i < count; ++i) begins_[i + 1] += begins_[i];
+    sorted_.resize(pairs_.size());
+    for (const KeptPair& pair : pairs_) sorted_[begins_[pair.parts[which]]++] = pair;
+    pairs_.swap(sorted_);
   }
 
-  std::vector<KeptPair> pairs_;
+  std::vector<KeptPair> pairs_, sorted_;
+  std::vector<long> begins_;
   std::vector<float> wakes_;  // of each block, when the first of its pairs is to be looked at
 };
 

@@ -1,6 +1,7 @@
 #include "solvers/contact/contact_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace springstab {
@@ -71,10 +72,14 @@ void ContactSearch::advance(const Places& x, const Places& v, double h, double t
 std::span<const Entered> ContactSearch::entered(const Places& x, const Places& y, double t, double h,
                                                 bool lands) {
   entered_.clear();
-  add_passing(x, y, h, lands);
+  in_step_.clear();
+  for (SurfacePairs& pairs : pairs_) {
+    in_step_.push_back(pairs.step(surface_places(x), surface_places(y), contact_.thickness));
+    add_passing(in_step_.back().collisions, x, h, lands);
+  }
   if (entered_.empty()) {
-    for (SurfacePairs& pairs : pairs_)
-      for (const SurfaceContact& found : pairs.proximities(surface_places(y), contact_.thickness)) {
+    for (const StepContacts& contacts : in_step_)
+      for (const SurfaceContact& found : contacts.proximities) {
         PairContact c = pair_contact(found);
         const double gap = found.gap - contact_.thickness;
         c.bound = lands ? bound_at_end(c, gap, x, y) / h : 0;
@@ -86,21 +91,25 @@ std::span<const Entered> ContactSearch::entered(const Places& x, const Places& y
   return entered_;
 }
 
-void ContactSearch::add_passing(const Places& x, const Places& y, double h, bool lands) {
-  for (SurfacePairs& pairs : pairs_)
-    for (const SurfaceContact& found : pairs.collisions(surface_places(x), surface_places(y))) {
-      PairContact c = pair_contact(found);
-      const double gap = c.normal.dot(parting(c, x)) - contact_.thickness;
-      c.bound = lands ? bound_at_start(gap) / h : 0;
-      entered_.push_back({c, -contact_.thickness, true});
-    }
+void ContactSearch::add_passing(std::span<const SurfaceContact> collisions, const Places& x, double h,
+                                bool lands) {
+  for (const SurfaceContact& found : collisions) {
+    PairContact c = pair_contact(found);
+    const double gap = c.normal.dot(parting(c, x)) - contact_.thickness;
+    c.bound = lands ? bound_at_start(gap) / h : 0;
+    entered_.push_back({c, -contact_.thickness, true});
+  }
 }
 
 // Of a step through a ball the end tells nothing; one along it may cut into the thickness.
 void ContactSearch::add_obstacles(const Places& x, const Places& y, double t, double h, bool lands) {
+  double longest = 0;
+  for (int i = 0; i < free_count_; ++i) longest = std::max(longest, (y[i] - x[i]).squaredNorm());
+  longest = std::sqrt(longest);
   for (std::size_t k = 0; k < contact_.obstacles.size(); ++k) {
     const Obstacle& obstacle = contact_.obstacles[k];
-    for (int i = 0; i < free_count_; ++i) {
+    list_near(k, y, t + h, longest + h * obstacle.velocity.norm());
+    for (const int i : near_obstacle_) {
       const Gap at = gap_at(obstacle, y[i], t + h);
       const double gap = at.gap - contact_.thickness;
       if (gap < 0) {
@@ -121,6 +130,12 @@ void ContactSearch::add_obstacles(const Places& x, const Places& y, double t, do
   }
 }
 
+// The free particles that are less than the thickness and that from it, and hardly any others.
+void ContactSearch::list_near(std::size_t obstacle, const Places& x, double t, double beyond_thickness) {
+  springstab::list_near(contact_.obstacles[obstacle], {x.data(), static_cast<std::size_t>(free_count_)}, t,
+                        contact_.thickness + beyond_thickness, near_obstacle_);
+}
+
 PairContact ContactSearch::touch(std::size_t obstacle, int particle, const Eigen::Vector3d& normal) const {
   const int other = static_cast<int>(placed_ + obstacle);
   return {{particle, other, other, other}, {1, -1, 0, 0}, normal, 0};
@@ -135,10 +150,12 @@ std::span<const Entered> ContactSearch::too_near(const Places& x, double t) {
   for (SurfacePairs& pairs : pairs_)
     for (const SurfaceContact& found : pairs.proximities(surface_places(x), contact_.thickness))
       add(pair_contact(found), found.gap - contact_.thickness);
-  for (std::size_t k = 0; k < contact_.obstacles.size(); ++k)
-    for (int i = 0; i < free_count_; ++i)
+  for (std::size_t k = 0; k < contact_.obstacles.size(); ++k) {
+    list_near(k, x, t, 0);
+    for (const int i : near_obstacle_)
       if (const Gap at = gap_at(contact_.obstacles[k], x[i], t); at.gap < contact_.thickness)
         add(touch(k, i, at.normal), at.gap - contact_.thickness);
+  }
   return entered_;
 }
 

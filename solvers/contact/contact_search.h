@@ -53,8 +53,9 @@ class ContactSearch {
 
  private:
   std::span<const Eigen::Vector3d> surface_places(const Places& x) const { return {x.data(), placed_}; }
-  void add_passing(const Places& x, const Places& y, double h, bool lands);
+  void add_passing(std::span<const SurfaceContact> collisions, const Places& x, double h, bool lands);
   void add_obstacles(const Places& x, const Places& y, double t, double h, bool lands);
+  void list_near(std::size_t obstacle, const Places& x, double t, double beyond_thickness);
   PairContact touch(std::size_t obstacle, int particle, const Eigen::Vector3d& normal) const;
 
   Contact contact_;
@@ -63,6 +64,8 @@ class ContactSearch {
   Places start_;        // of nodes that are not free, at t = 0
   Places velocity_;     // of all nodes; zero of the free ones
   std::vector<SurfacePairs> pairs_;
+  std::vector<StepContacts> in_step_;  // of each of them
+  std::vector<int> near_obstacle_;
   std::vector<Entered> entered_;
   long found_ = 0;
 };

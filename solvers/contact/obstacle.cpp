@@ -20,6 +20,15 @@ Gap gap_of(const Sphere& sphere, const Eigen::Vector3d& x) {
   return {distance - sphere.radius, from / distance, 1 / distance};
 }
 
+bool is_near(const Plane& plane, const Eigen::Vector3d& x, double distance) {
+  return gap_of(plane, x).gap <= distance;
+}
+
+bool is_near(const Sphere& sphere, const Eigen::Vector3d& x, double distance) {
+  const double reach = sphere.radius + distance;
+  return (x - sphere.center).squaredNorm() <= (1 + rounding_of_places) * reach * reach;
+}
+
 double size_of(const Plane& plane) { return plane.point.norm(); }
 double size_of(const Sphere& sphere) { return sphere.center.norm() + sphere.radius; }
 
@@ -53,6 +62,18 @@ double depth_of(const Sphere& sphere, std::span<const Eigen::Vector3d> places, c
 Gap gap_at(const Obstacle& obstacle, const Eigen::Vector3d& x, double t) {
   const Eigen::Vector3d back = x - t * obstacle.velocity;
   return std::visit([&](const auto& shape) { return gap_of(shape, back); }, obstacle.shape);
+}
+
+void list_near(const Obstacle& obstacle, std::span<const Eigen::Vector3d> places, double t, double distance,
+               std::vector<int>& near) {
+  near.clear();
+  const Eigen::Vector3d way = t * obstacle.velocity;
+  std::visit(
+      [&](const auto& shape) {
+        for (std::size_t i = 0; i < places.size(); ++i)
+          if (is_near(shape, places[i] - way, distance)) near.push_back(static_cast<int>(i));
+      },
+      obstacle.shape);
 }
 
 bool path_enters(const Obstacle& obstacle, double t, const Eigen::Vector3d& x, const Eigen::Vector3d& w,

@@ -35,6 +35,11 @@ struct Gap {
 };
 Gap gap_at(const Obstacle& obstacle, const Eigen::Vector3d& x, double t);
 
+/// The numbers of all places that are at most that distance from the obstacle, and hardly any others: for
+/// less than the gaps.
+void list_near(const Obstacle& obstacle, std::span<const Eigen::Vector3d> places, double t, double distance,
+               std::vector<int>& near);
+
 /// Whether x + s w comes inside the obstacle as it is at t, in 0 <= s <= 1.
 bool path_enters(const Obstacle& obstacle, double t, const Eigen::Vector3d& x, const Eigen::Vector3d& w,
                  double thickness);

@@ -20,7 +20,7 @@ constexpr double same_place = 1e-12;  // relative
 
 // Edges and edges have two positive weights.
 bool is_before(const PairContact& a, const PairContact& b) {
-  if (a.nodes != b.nodes) return a.nodes < b.nodes;
+  if (const auto order = a.nodes <=> b.nodes; order != 0) return order < 0;
   return (a.weights[1] > 0) < (b.weights[1] > 0);
 }
 

@@ -5,6 +5,7 @@
 //     SurfacePairs pairs(cloth, free_count, {.reach = 0.005, .skin = 0.005});
 //     for (const SurfaceContact& c : pairs.proximities(x, 0.005)) …
 //     for (const SurfaceContact& c : pairs.collisions(x, x_next)) …
+//     const auto [collisions, proximities] = pairs.step(x, x_next, 0.005);  // both, at the end
 //
 // Places x of all particles, in meters, are one list: particles 0 … free_count - 1 are free to move, those
 // after them are not: pinned ones, and the vertices of obstacles. Pairs that share a particle, and pairs
@@ -34,6 +35,11 @@ struct SurfaceContact {
   Eigen::Vector3d normal;         // n, a unit vector, from the second one to the first, as before the contact
   double gap;                     // n·Σ w x [m]; of collisions at the time of impact, 0 but for tolerance
   double time;                    // of impact, in [0, 1] of the step; 0 of proximities
+};
+
+/// Lists that the next call of whatever kind overwrites.
+struct StepContacts {
+  std::span<const SurfaceContact> collisions, proximities;
 };
 
 struct PairDistances {
@@ -69,6 +75,10 @@ class SurfacePairs {
   /// meeting unless they part.
   std::span<const SurfaceContact> collisions(std::span<const Eigen::Vector3d> x0,
                                              std::span<const Eigen::Vector3d> x1);
+
+  /// Both in one go, for less: collisions(x0, x1) and proximities(x1, distance).
+  StepContacts step(std::span<const Eigen::Vector3d> x0, std::span<const Eigen::Vector3d> x1,
+                    double distance);
 
   const PairCounts& counts() const;
 

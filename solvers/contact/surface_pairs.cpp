@@ -53,7 +53,7 @@ std::span<const SurfaceContact> SurfacePairs::proximities(PlaceList x, double di
     kept.normal = n.cast<float>();
     if (closest.difference.squaredNorm() > distance * distance) return;
     const Eigen::Vector3d normal = n.isZero(0) ? normal_of_touch(kind, at) : n;
-    p.found.push_back({particles, closest.weights, normal, normal.dot(closest.difference), 0});
+    p.found.push_back({particles, closest.weights, normal, normal.dot(closest.difference), 0, kind});
   });
   return p.found;
 }
@@ -66,7 +66,7 @@ std::span<const SurfaceContact> SurfacePairs::collisions(PlaceList x0, PlaceList
     const auto impact = first_impact(kind, places_of(particles, x0), places_of(particles, x1));
     if (!impact) return;
     p.found.push_back({particles, impact->places.weights, impact->normal,
-                       impact->normal.dot(impact->places.difference), impact->time});
+                       impact->normal.dot(impact->places.difference), impact->time, kind});
   });
   return p.found;
 }

@@ -101,8 +101,9 @@ void add_sheet(std::string& obj, int rows, int columns, double bend, double angl
 struct TwoSheets : test::ScratchFolder {
   Subject subject;
 
-  explicit TwoSheets(const std::string& model, const std::string& more = "", double bend = 0.0004)
-      : subject(read(model, more, bend)) {}
+  explicit TwoSheets(const std::string& model, const std::string& more = "", double bend = 0.0004,
+                     const std::string& self = "true")
+      : subject(read(model, more, bend, self)) {}
 
   Scene& scene() { return *subject.scene(); }
 
@@ -117,7 +118,7 @@ struct TwoSheets : test::ScratchFolder {
   }
 
  private:
-  Subject read(const std::string& model, const std::string& more, double bend) {
+  Subject read(const std::string& model, const std::string& more, double bend, const std::string& self) {
     std::string obj;
     int vertices = 0;
     add_sheet(obj, 5, 6, bend, 0, 0, vertices);
@@ -128,7 +129,8 @@ struct TwoSheets : test::ScratchFolder {
     return Subject(read_scene_file(
         file("scene.json", R"({"geometry": {"mesh": "sheets.obj"}, "damping": {"d0": 2, "alpha": 0},
           "material": {"area_density": 0.2, "structural": 200, "shear": 100, "bending": 1},
-          "contact": {"self": true, "obstacles": [{"mesh": "table.obj"}], "thickness": 0.005, "model":
+          "contact": {"self": )" +
+                               self + R"(, "obstacles": [{"mesh": "table.obj"}], "thickness": 0.005, "model":
           {"penalty": )" + model +
                                "}" + more + "}}")
             .string()));
@@ -463,6 +465,27 @@ BOOST_AUTO_TEST_CASE(no_contact_of_surfaces_exceeds_the_bound_on_stiffness_and_d
   }
   BOOST_TEST(most >= 3);
   BOOST_TEST(tightest < 0.8);
+}
+
+// A mesh does not move: half of that, beside planes and balls.
+BOOST_AUTO_TEST_CASE(no_contact_with_a_mesh_exceeds_half_the_bound) {
+  if (lacks_embree()) return;
+  TwoSheets sheets(R"({"stiffness": 300})", "", 0.0004, "false");
+  SurfaceTouches touches = touches_of(sheets.subject);
+  double tightest = 1;
+  for (int i = 0; i < 4; ++i) {
+    State<Vector> state = sheets.lowered(0, 0.002, 40 + i);
+    for (Eigen::Index y = 1; y < state.x.size(); y += 3) state.x[y] -= 0.005;
+    touches.find(state.x);
+    const long contacts = whole_contacts(touches.most_contacts());
+    const ContactBound bound = sheets.subject.contact_bound(contacts).value();
+    BOOST_TEST(bound.stiffness == 300. * double(contacts));
+    const double largest = -test::smallest_eigenvalue(-300 * held_stiffness(touches, false));
+    BOOST_TEST(largest > 0);
+    BOOST_TEST(largest <= bound.stiffness * (1 + 1e-12));
+    tightest = std::min(tightest, 1 - largest / bound.stiffness);
+  }
+  BOOST_TEST(tightest < 0.5);
 }
 
 // With no damping h = 2/√λ_max(M⁻¹K), K with all that touches.

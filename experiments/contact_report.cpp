@@ -19,13 +19,6 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-// With all the contact there can be.
-StructureLimits limits_in_contact(Subject& subject, const State<Vector>& start, double safety,
-                                  std::uint64_t seed, bool certify) {
-  Structure structure = in_any_contact(subject.structure(start), *subject.contact_bound());
-  return StructureLimits(std::move(structure), {.safety = safety, .certify = certify, .seed = seed});
-}
-
 }  // namespace
 
 Json json_of(const ContactCounts& c) {
@@ -42,6 +35,10 @@ Json json_of(const ContactCounts& c) {
     json["zones"] = c.surfaces->zones;
     json["blocked"] = c.surfaces->blocked;
   }
+  if (c.springs) {
+    json["contacts"] = c.springs->contacts;
+    json["plans"] = c.springs->plans;
+  }
   return json;
 }
 
@@ -50,6 +47,7 @@ ContactCounts contact_counts_of(const Json& json) {
                        json.at("passes"),        json.at("unresolved"),    json.at("normal_work"),
                        json.at("friction_work"), json.at("obstacle_work"), json.at("largest_rise")};
   if (json.contains("zones")) counts.surfaces = {json.at("zones"), json.at("blocked")};
+  if (json.contains("contacts")) counts.springs = {json.at("contacts"), json.at("plans")};
   return counts;
 }
 
@@ -59,7 +57,15 @@ void add_contact(Json& report, const ContactCounts& counts) {
     report[value.is_number_integer() ? "counts" : "energy"]["contact"][key] = value;
 }
 
-std::string contact_text(const ContactCounts& c) {
+std::string contact_text(const ContactCounts& c, double last_step) {
+  if (c.springs) {
+    std::string out = text("contact: at most %ld at a particle", c.springs->contacts);
+    if (c.springs->plans > 0)
+      out += text(", for which steps were planned anew %ld times; the last was %.6g s", c.springs->plans,
+                  last_step);
+    if (c.friction_work != 0) out += text("; friction took %.4g J", 0 - c.friction_work);
+    return out + '\n';
+  }
   std::string out = text("contact: %ld impulses, %ld particles put back on a surface; it took %.4g J",
                          c.impulses, c.lifts, 0 - c.normal_work);
   if (c.friction_work != 0) out += text(", friction %.4g J", 0 - c.friction_work);
@@ -84,8 +90,13 @@ ContactLimits::ContactLimits(Subject& subject, const State<Vector>& start,
     : contact_(*subject.contact()) {
   for (const std::string& method : methods)
     (is_proved(contact_, method) ? proved_ : measured_).push_back(method);
-  if (subject.contact_bound())
-    any_contact_ = limits_in_contact(subject, start, safety, 1, true).limits("symplectic-euler").h_certified;
+  if (subject.counts_contacts()) contacts_ = subject.contacts(start.x);
+  const auto bound = subject.contact_bound(contacts_.value_or(1));
+  if (bound)
+    any_contact_ = StructureLimits(in_any_contact(subject.structure(start), *bound),
+                                   {.safety = safety, .certify = true, .seed = 1})
+                       .limits("symplectic-euler")
+                       .h_certified;
 }
 
 Json ContactLimits::json() const {
@@ -98,6 +109,7 @@ Json ContactLimits::json() const {
   if (contact_.self) json["self"] = true;
   if (std::holds_alternative<Penalty>(contact_.model))
     json["any_contact"] = {{"method", "symplectic-euler"}, {"h_certified", number(any_contact_)}};
+  if (contacts_) json["any_contact"]["contacts"] = *contacts_;
   return json;
 }
 
@@ -105,8 +117,10 @@ std::string ContactLimits::text_of() const {
   std::string out;
   if (std::holds_alternative<Penalty>(contact_.model)) {
     out = "\ncontact by springs: these limits are for the contact there is at the state given";
-    if (any_contact_)
-      out += text("; symplectic-euler is stable below %.6g s in any contact: proved", *any_contact_);
+    if (any_contact_) out += text("; symplectic-euler is stable below %.6g s in any contact", *any_contact_);
+    if (any_contact_ && contacts_)
+      out += text(" with at most %ld at a particle, while normals and weights stay", *contacts_);
+    if (any_contact_) out += ": proved";
     return out + '\n';
   }
   const std::string model = std::string("\ncontact (") + name(contact_.model) + "): ";
@@ -116,12 +130,6 @@ std::string ContactLimits::text_of() const {
   if (!measured_.empty())
     out += model + "measured, no proof that the limit holds in contact: " + joined(measured_) + '\n';
   return out;
-}
-
-std::optional<double> step_in_contact(Subject& subject, const State<Vector>& start, const std::string& method,
-                                      double safety, std::uint64_t seed) {
-  if (!subject.contact_bound()) return std::nullopt;
-  return limits_in_contact(subject, start, safety, seed, false).limits(method).recommended;
 }
 
 }  // namespace springstab

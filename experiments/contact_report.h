@@ -16,8 +16,8 @@ ContactCounts contact_counts_of(const Json& json);
 
 /// `counts.contact` and `energy.contact` of a run's report, which has `counts` and `energy` already.
 void add_contact(Json& report, const ContactCounts& counts);
-/// The same for people.
-std::string contact_text(const ContactCounts& counts);
+/// The same for people. `last_step`: of the run [s].
+std::string contact_text(const ContactCounts& counts, double last_step);
 
 /// Whether contact leaves the method's limit as it is, by proof (solvers/contact/impulses.h); else it was
 /// measured.
@@ -35,12 +35,8 @@ class ContactLimits {
  private:
   const Contact& contact_;
   std::vector<std::string> proved_, measured_;
+  std::optional<long> contacts_;       // of surfaces at a particle, of which that is told
   std::optional<double> any_contact_;  // proved for symplectic Euler [s]
 };
-
-/// The largest step to choose for a penalty: recommended with all the contact there can be [s]. Nothing where
-/// that is not known, or contact adds no stiffness.
-std::optional<double> step_in_contact(Subject& subject, const State<Vector>& start, const std::string& method,
-                                      double safety, std::uint64_t seed);
 
 }  // namespace springstab

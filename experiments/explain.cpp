@@ -106,7 +106,7 @@ void add_contact_part(Json& parts, const Subject& subject, const State<Vector>& 
   for (const MeshObstacle& mesh : contact.meshes) elements += std::ssize(mesh.triangles);
   parts.push_back(
       part(has_surfaces ? "contact of surfaces, triangles" : "contact, pairs of particle and obstacle",
-           elements, "impulses", seconds_each([&] {
+           elements, subject.counts_contacts() ? "count" : "impulses", seconds_each([&] {
              after = at;
              filter->apply(h, h, at, after);
            }),

@@ -14,6 +14,7 @@
 #include "experiments/inputs/size_report.h"
 #include "experiments/report/pictures.h"
 #include "experiments/runs/checkpoint.h"
+#include "experiments/runs/contact_steps.h"
 #include "experiments/runs/identity.h"
 #include "experiments/runs/measured_run.h"
 #include "experiments/runs/recorder.h"
@@ -126,8 +127,9 @@ int say_no_plan(const std::string& method, const std::string& why, bool json) {
 
 // Runs from the start or from where a run was left.
 Course run(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
-           StepChooser& chooser, const StepPlan& plan, const State<Vector>& start, CheckpointFile& checkpoint,
-           const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder, Film& film, ErrorRun* error) {
+           StepChooser& chooser, StepsInContact& in_contact, const StepPlan& plan, const State<Vector>& start,
+           CheckpointFile& checkpoint, const StopOnInterrupt& interrupt, std::optional<Recorder>& recorder,
+           Film& film, ErrorRun* error) {
   Course course{
       .result = {}, .start = start, .end = {}, .watch = chooser.watch(start), .counts = {}, .step = plan.h};
   KeptRun begin = checkpoint.read().value_or(KeptRun{start_of(plan), start, {}});
@@ -139,6 +141,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
   recorder.emplace(subject, options, resumed ? others.at("recorder") : Json());
   const std::unique_ptr<ContactFilter> contact = subject.contact_filter();
   if (contact && resumed) contact->set_counts(contact_counts_of(others.at("contact")));
+  in_contact.follow(contact.get(), chooser);
   if (subject.contact()) course.watch = with_obstacles(course.watch, *subject.contact());
   CountingSystem counted(subject.system(), resumed ? counts_of(others.at("counts")) : Counts());
   const double cpu_before = cpu_seconds() - (resumed ? others.at("cpu_seconds").get<double>() : 0);
@@ -166,7 +169,7 @@ Course run(const CommonOptions& common, const SimulateOptions& options, Subject&
         if (long_steps || so_far.at_checkpoint) progress.update(so_far.time / options.duration);
         return !interrupt.requested();
       },
-      chooser.policy(), contact.get(),
+      in_contact.policy(chooser), contact.get(),
       [&] {
         return std::min({recorder->unseen_until(), film.unseen_until(),
                          error ? error->unseen_until() : std::numeric_limits<double>::infinity()});
@@ -184,10 +187,8 @@ constexpr int again = -1;  // no exit status
 int run_subject(const CommonOptions& common, const SimulateOptions& options, Subject& subject,
                 ErrorRun* error) {
   const State<Vector> start = subject.initial_state(common.seed);
-  StepOptions steps = step_options(common, options);
-  if (const auto most = step_in_contact(subject, start, options.method, options.safety, common.seed))
-    steps.max_step = std::min(*most, steps.max_step.value_or(*most));
-  StepChooser chooser(subject, steps);
+  StepsInContact in_contact(subject, start, step_options(common, options));
+  StepChooser chooser(subject, in_contact.options());
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) return say_no_plan(options.method, reason_text(chooser), common.json);
   prepare_solver(subject, options);
@@ -200,8 +201,8 @@ int run_subject(const CommonOptions& common, const SimulateOptions& options, Sub
   std::optional<Recorder> recorder;
   Film film(options.picture, subject, options.duration);
   const StopOnInterrupt interrupt;
-  Course course =
-      run(common, options, subject, chooser, *plan, start, checkpoint, interrupt, recorder, film, error);
+  Course course = run(common, options, subject, chooser, in_contact, *plan, start, checkpoint, interrupt,
+                      recorder, film, error);
   if (error && course.result.status == StepStatus::done && !course.stopped) {
     if (error->is_to_repeat(start, chooser.decisions().h, interrupt)) {
       checkpoint.finish();

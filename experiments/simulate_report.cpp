@@ -136,7 +136,7 @@ void print_report(const Course& course, const SimulateOptions& options, Subject&
     const Eigen::Vector3d p = scene->positions(course.end.x).back();
     std::cout << text("last particle at (%.9g, %.9g, %.9g) m\n", p.x(), p.y(), p.z());
   }
-  if (course.contact) std::cout << contact_text(*course.contact);
+  if (course.contact) std::cout << contact_text(*course.contact, chooser.decisions().h);
   if (frames > 0) std::cout << text("%d frames in %s\n", frames, options.output.c_str());
 }
 

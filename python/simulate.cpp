@@ -1,6 +1,7 @@
 // Runs, with their frames as arrays.
 #include "analysis/constants.h"
 #include "analysis/limits/step_policy.h"
+#include "experiments/runs/contact_steps.h"
 #include "experiments/runs/step_run.h"
 #include "experiments/simulate_report.h"
 #include "python/bindings.h"
@@ -68,8 +69,9 @@ py::dict simulate(Subject& model, const StepOptions& options, bool designed, int
     expect_designable(model);
     model.design_damping();
   }
-  StepChooser chooser(model, options);
   const State<Vector> start = start_of(model, options.seed, x, v);
+  StepsInContact in_contact(model, start, options);
+  StepChooser chooser(model, in_contact.options());
   State<Vector> state = start;
   Frames kept{.interval = frames > 0 ? options.duration / frames : 0};
   const auto stepper = options.method.stepper();
@@ -91,11 +93,12 @@ py::dict simulate(Subject& model, const StepOptions& options, bool designed, int
       return !stopped;
     };
     const auto contact = model.contact_filter();
+    in_contact.follow(contact.get(), chooser);
     EnergyWatch watch = chooser.watch(start);
     if (contact) watch = with_obstacles(watch, *model.contact());
     const UnseenUntil unseen_until = [&] { return callback ? -infinity : kept.next(); };
-    result = springstab::simulate(model.system(), *stepper, plan, watch, state, observe, chooser.policy(),
-                                  contact.get(), unseen_until);
+    result = springstab::simulate(model.system(), *stepper, plan, watch, state, observe,
+                                  in_contact.policy(chooser), contact.get(), unseen_until);
   }
   py::dict d;
   d["method"] = chooser.method().name();

@@ -88,6 +88,7 @@ StepStatus filtered_step(System& system, Stepper& stepper, StepFilter& filter, d
   const StepStatus status = stepper.step(system, h, state);
   if (status != StepStatus::done) return status;
   const Filtered filtered = filter.apply(t, h, before, state);
+  if (filtered == Filtered::outgrown) return StepStatus::diverged;
   if (filtered == Filtered::failed) {
     state.x = before.x;
     state.v = before.v;

@@ -59,7 +59,7 @@ struct EnergyWatch {
 struct SimulationResult {
   long steps = 0;                        // completed and kept
   double time = 0;                       // the sum of their h [s]
-  StepStatus status = StepStatus::done;  // of the last step; diverged also when the watch said so
+  StepStatus status = StepStatus::done;  // of the last step; diverged also when watch or filter said so
   double failed_at = 0;                  // time that the last failed step would have reached [s]
   long failures = 0;                     // steps that were discarded and taken again otherwise
 };

@@ -6,8 +6,9 @@
 
 namespace springstab {
 
-/// What a filter has done: where it failed, the step is to be taken back.
-enum class Filtered { unchanged, changed, failed };
+/// What a filter has done: where it failed, the step is to be taken back; where the step has outgrown what it
+/// was planned for, the run is, to its last checkpoint, for another plan.
+enum class Filtered { unchanged, changed, failed, outgrown };
 
 /// Changes states between steps of a run (simulation.h).
 class StepFilter {

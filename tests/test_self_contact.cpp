@@ -552,12 +552,6 @@ BOOST_AUTO_TEST_CASE(what_is_wrong_with_surfaces_in_contact_is_said_with_its_lin
          "'thickness' is zero or missing, expected a positive number of metres with 'self' or a mesh");
   refuse("{\"obstacles\": [{\"mesh\": 3}], \"thickness\": 0.001}", 2,
          "'mesh' is 3, expected the path of a mesh file");
-  refuse("{\"thickness\": 0.01, \"self\": true,\n\"model\": {\"penalty\": {\"stiffness\": 10}}}", 2,
-         "'self' stands with the model 'penalty', expected it with 'impulses' or 'inelastic' only");
-  refuse(
-      "{\"thickness\": 0.01, \"model\": {\"penalty\": {\"stiffness\": 10}},\n\"obstacles\": [\n{\"mesh\": "
-      "\"box.obj\"}]}",
-      4, "'mesh' stands with the model 'penalty', expected it with 'impulses' or 'inelastic' only");
   refuse("{\"self\": true,\n\"thickness\": 0.03}", 3,
          "'thickness' is 0.03 m, expected at most the edge 0-1 of 0.025 m");
   if (without_embree()) return refuse("{\"thickness\": 0.01,\n\"self\": true}", 3, embree_is_missing);

@@ -171,6 +171,18 @@ std::optional<StepPlan> StepChooser::after_divergence(double time, const State<V
   return plan;
 }
 
+void StepChooser::limit_step(double most) {
+  options_.max_step = std::min(most, options_.max_step.value_or(most));
+}
+
+StepPlan StepChooser::plan_rest(double time) {
+  const double step = std::min(decisions_.h, options_.max_step.value_or(decisions_.h));
+  const StepPlan plan =
+      plan_steps(options_.method.info(), step, options_.duration - time, decisions_.relinearize);
+  apply(plan);
+  return plan;
+}
+
 void StepChooser::go_on(const StepDecisions& decisions, double alpha) {
   decisions_ = decisions;
   if (designed_) model_.set_alpha(alpha);

@@ -96,6 +96,11 @@ class StepChooser {
   /// system it allows for the growth of the motions that grow by themselves, as this method steps them.
   EnergyWatch watch(const State<Vector>& start);
 
+  /// No longer step from the next plan on.
+  void limit_step(double most);
+  /// Applies and gives a plan for the rest of the run from `time` on, where what limits it has changed.
+  StepPlan plan_rest(double time);
+
   /// For simulate(); refers to this object.
   StepPolicy policy();
 

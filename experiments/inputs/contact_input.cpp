@@ -121,11 +121,15 @@ Contact contact_of(const ContactDescription& description, std::vector<std::strin
   return contact;
 }
 
-void expect_surfaces_apart(const ContactDescription& description, const Contact& contact,
-                           const ClothSurface& surface, const Vector& x, const SurfaceNames& names) {
+void expect_faces(const ContactDescription& description, const ClothSurface& surface) {
   if (surface.triangles.empty())
     throw InputError(description.source, line_of_surfaces(description),
                      "the cloth has no faces, expected some for contact of surfaces");
+}
+
+void expect_surfaces_apart(const ContactDescription& description, const Contact& contact,
+                           const ClothSurface& surface, const Vector& x, const SurfaceNames& names) {
+  expect_faces(description, surface);
   Apart apart(description, contact, surface, x, names);
   if (contact.self) apart.expect_self();
   for (std::size_t m = 0; m < contact.meshes.size(); ++m)

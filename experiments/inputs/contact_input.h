@@ -20,6 +20,9 @@ struct SurfaceNames {
   std::vector<int> face;  // of each triangle
 };
 
+/// Throws InputError where the cloth has none that surfaces could meet.
+void expect_faces(const ContactDescription& description, const ClothSurface& surface);
+
 /// Throws InputError where the cloth, of free particles at x, cuts itself or a mesh, or is nearer than the
 /// thickness.
 void expect_surfaces_apart(const ContactDescription& description, const Contact& contact,

@@ -33,7 +33,7 @@ class ContactReader : private JsonReader {
     if (const JsonValue* thickness = find(json, "thickness")) d.thickness_line = thickness->line;
     read_number(json, "friction", Sign::not_negative, contact.friction);
     if (const JsonValue* value = find(json, "model")) contact.model = model(*value);
-    if (std::holds_alternative<Penalty>(contact.model)) expect_penalties(d, given);
+    if (given && std::holds_alternative<Penalty>(contact.model)) expect_at_rest(*given);
     if ((contact.self || !d.meshes.empty()) && contact.thickness == 0)
       fail(d.thickness_line > 0 ? d.thickness_line : json.line,
            "'thickness' is zero or missing, expected a positive number of metres with 'self' or a mesh");
@@ -108,13 +108,11 @@ class ContactReader : private JsonReader {
     wrong(json, expected);
   }
 
-  void expect_penalties(const ContactDescription& d, const JsonValue* obstacles) const {
-    const std::string expected = " with the model 'penalty', expected it with 'impulses' or 'inelastic' only";
-    if (d.contact.self) fail(d.self_line, "'self' stands" + expected);
-    if (!d.meshes.empty()) fail(d.meshes[0].place.line, "'mesh' stands" + expected);
-    for (const JsonValue& item : obstacles->items)
+  void expect_at_rest(const JsonValue& obstacles) const {
+    for (const JsonValue& item : obstacles.items)
       if (const JsonValue* velocity = find(item, "velocity"))
-        fail(velocity->key_line, "'velocity' stands" + expected);
+        fail(velocity->key_line,
+             "'velocity' stands with the model 'penalty', expected it with 'impulses' or 'inelastic' only");
   }
 };
 

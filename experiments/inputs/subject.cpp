@@ -8,6 +8,7 @@
 #include "experiments/inputs/grid.h"
 #include "experiments/inputs/pinned.h"
 #include "solvers/contact/penalty.h"
+#include "solvers/contact/surface_penalty.h"
 #include "solvers/io/input_error.h"
 #include "solvers/io/matrix_file.h"
 #include "solvers/io/mesh_file.h"
@@ -237,7 +238,13 @@ void Subject::add_contact(const ContactDescription& description, const Cloth& cl
             std::to_string(number_in_file(i)) + "-" + std::to_string(number_in_file(j)) + " of " +
             shown(length) + " m");
   });
-  if (std::holds_alternative<Penalty>(contact_->model)) scene.add(penalty_terms(*contact_));
+  if (!std::holds_alternative<Penalty>(contact_->model)) return;
+  if (!contact_->obstacles.empty()) scene.add(penalty_terms(*contact_));
+  if (!contact_->has_surfaces()) return;
+  const ClothSurface surface = contact_surface(scene).first;
+  expect_faces(description, surface);
+  touches_ = std::make_shared<SurfaceTouches>(*contact_, scene.free_particles(), surface);
+  scene.add(surface_penalty_terms(*contact_, touches_));
 }
 
 void Subject::expect_apart(const ContactDescription& description) {

@@ -14,6 +14,7 @@
 #include "experiments/inputs/input_options.h"
 #include "experiments/inputs/mesh_input.h"
 #include "solvers/contact/contact_filter.h"
+#include "solvers/contact/surface_touches.h"
 
 namespace springstab {
 
@@ -62,8 +63,13 @@ class Subject : public Model {
   const std::vector<std::string>& contact_notes() const { return contact_notes_; }
   /// What that takes between steps; null where it takes nothing.
   std::unique_ptr<ContactFilter> contact_filter() const;
-  /// Of a penalty, what it adds to K and D at most.
-  std::optional<ContactBound> contact_bound() const;
+  /// Whether springs act between surfaces, of which it is not known before how many there are at a particle.
+  bool counts_contacts() const { return touches_ != nullptr; }
+  /// Then how many are to be planned for at x (solvers/contact/surface_penalty.h).
+  long contacts(const Vector& x) const;
+  /// Of a penalty, what it adds to K and D at most: with all planes and balls there are, and of surfaces with
+  /// so many contacts at a particle.
+  std::optional<ContactBound> contact_bound(long contacts = 1) const;
 
   /// Whether a grid's diagonals alternate and nothing is made of triangles.
   bool has_unused_diagonals() const { return unused_diagonals_; }
@@ -96,6 +102,7 @@ class Subject : public Model {
              const std::string& source);
   template <class Cloth>
   void add_contact(const ContactDescription& description, const Cloth& cloth, Scene& scene);
+  std::pair<ClothSurface, SurfaceNames> contact_surface(const Scene& scene) const;
   void expect_apart(const ContactDescription& description);
   int number_in_file(int particle) const;
   void build_matrices(const InputOptions& options, bool any_matrices);
@@ -113,6 +120,7 @@ class Subject : public Model {
   std::optional<Material> material_;
   std::optional<Contact> contact_;
   std::vector<std::string> contact_notes_;
+  std::shared_ptr<SurfaceTouches> touches_;  // by springs between surfaces
   Eigen::Vector3d stretch_{1, 1, 1};
 };
 

@@ -6,24 +6,28 @@
 #include "experiments/inputs/grid.h"
 #include "experiments/inputs/subject.h"
 #include "solvers/contact/penalty.h"
+#include "solvers/contact/surface_penalty.h"
 #include "solvers/scene/every_pose.h"
 
 namespace springstab {
 
 std::unique_ptr<ContactFilter> Subject::contact_filter() const {
   if (!contact_) return nullptr;
+  if (touches_) return std::make_unique<SurfacePenaltyFilter>(*contact_, scene()->free_masses(), touches_);
   return make_contact_filter(*contact_, scene()->free_masses(),
                              contact_->has_surfaces() ? contact_surface().first : ClothSurface());
 }
 
-std::pair<ClothSurface, SurfaceNames> Subject::contact_surface() const {
-  const int particles = scene()->particles(), free_count = scene()->free_particles();
+std::pair<ClothSurface, SurfaceNames> Subject::contact_surface() const { return contact_surface(*scene()); }
+
+std::pair<ClothSurface, SurfaceNames> Subject::contact_surface(const Scene& scene) const {
+  const int particles = scene.particles(), free_count = scene.free_particles();
   std::vector<int> node(static_cast<std::size_t>(particles)), particle(node.size());
   for (int i = 0, free = 0, pinned = free_count; i < particles; ++i)
     particle[node[i] = std::ranges::binary_search(pinned_, i) ? pinned++ : free++] = i;
   ClothSurface surface;
   SurfaceNames names;
-  const std::vector<Eigen::Vector3d> places = scene()->positions(scene()->rest_state().x);
+  const std::vector<Eigen::Vector3d> places = scene.positions(scene.rest_state().x);
   for (const int i : pinned_) surface.pinned.push_back(places[i]);
   for (int f = 0; f < std::ssize(faces()); ++f)
     for (std::size_t c = 2; c < faces_[f].size(); ++c) {
@@ -76,7 +80,7 @@ std::optional<ElementsOf> Subject::elements(const Vector& x) const {
 }
 
 std::function<StructuralMatrices()> Subject::every_pose() const {
-  if (!net_) return {};
+  if (!net_ || touches_) return {};
   const RayleighDamping rayleigh{damping().d0, damping().alpha};
   return [net = net_, pinned = pinned_, rayleigh, contact = contact_bound()] {
     StructuralMatrices all = springstab::every_pose(*net, pinned, rayleigh);
@@ -89,10 +93,16 @@ const Faces& Subject::faces() const {
   return faces_;
 }
 
-std::optional<ContactBound> Subject::contact_bound() const {
+long Subject::contacts(const Vector& x) const {
+  touches_->find(x);
+  return whole_contacts(touches_->most_contacts());
+}
+
+std::optional<ContactBound> Subject::contact_bound(long contacts) const {
   const auto* penalty = contact_ ? std::get_if<Penalty>(&contact_->model) : nullptr;
   if (!penalty) return std::nullopt;
-  const auto most = static_cast<double>(contact_->obstacles.size());
+  auto most = static_cast<double>(contact_->obstacles.size());
+  if (touches_) most += (contact_->self ? 2. : 1.) * static_cast<double>(contacts);
   return ContactBound{most * penalty->stiffness, most * penalty->damping};
 }
 

@@ -8,6 +8,7 @@
 #include "analysis/constants.h"
 #include "experiments/command/output.h"
 #include "experiments/command/shared_options.h"
+#include "experiments/runs/contact_steps.h"
 #include "experiments/runs/moments.h"
 #include "solvers/io/input_error.h"
 
@@ -101,9 +102,8 @@ Told<K0AlongMotion> k0_along_motion(const CommonOptions& common, LimitsAnswer& a
     return {{}, "Left out: k0 of so many unknowns, again and again, takes too long."};
   const double steps = std::clamp(most_unknown_steps / unknowns, 64., most_steps);
   const double end = duration.value_or(std::min(longest_motion, steps * step));
-  StepOptions wanted{.method = method, .duration = end, .safety = answer.safety(), .seed = common.seed};
-  wanted.max_step = step_in_contact(subject, answer.start(), method.name(), answer.safety(), common.seed);
-  StepChooser chooser(subject, wanted);
+  const StepOptions wanted{.method = method, .duration = end, .safety = answer.safety(), .seed = common.seed};
+  StepChooser chooser(subject, StepsInContact(subject, answer.start(), wanted).options());
   const std::optional<StepPlan> plan = chooser.first_plan();
   if (!plan) return {{}, "Left out: no run can start, for no stable step is known."};
   const MomentsOfRun run = moments_of(subject, chooser, *plan, end,

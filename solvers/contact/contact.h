@@ -14,7 +14,7 @@ namespace springstab {
 struct LandingImpulses {};
 /// Impulses take all velocity into the obstacle as soon as the step to come would enter it.
 struct InelasticImpulses {};
-/// Springs and dampers (penalty.h).
+/// Springs and dampers (penalty.h, surface_penalty.h).
 struct Penalty {
   double stiffness = 0;  // k_c [N/m]
   double damping = 0;    // d_c [N·s/m]

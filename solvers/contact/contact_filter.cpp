@@ -6,13 +6,18 @@
 #include "solvers/contact/impulses.h"
 #include "solvers/contact/penalty.h"
 #include "solvers/contact/surface_impulses.h"
+#include "solvers/contact/surface_penalty.h"
 
 namespace springstab {
 
 std::unique_ptr<ContactFilter> make_contact_filter(const Contact& contact, const std::vector<double>& mass,
                                                    const ClothSurface& surface) {
+  const bool springs = std::holds_alternative<Penalty>(contact.model);
+  if (contact.has_surfaces() && springs)
+    return std::make_unique<SurfacePenaltyFilter>(
+        contact, mass, std::make_shared<SurfaceTouches>(contact, static_cast<int>(mass.size()), surface));
   if (contact.has_surfaces()) return std::make_unique<SurfaceImpulses>(contact, mass, surface);
-  if (!std::holds_alternative<Penalty>(contact.model)) return std::make_unique<Impulses>(contact, mass);
+  if (!springs) return std::make_unique<Impulses>(contact, mass);
   if (contact.friction == 0) return nullptr;
   return std::make_unique<PenaltyFriction>(contact, mass);
 }

@@ -1,6 +1,7 @@
 // The part of contact that acts between a method's steps, and what it counts.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -16,6 +17,12 @@ struct SurfaceCounts {
   long blocked = 0;  // steps that had no way
 };
 
+/// Of springs between surfaces (surface_penalty.h).
+struct SpringCounts {
+  long contacts = 1;  // at a particle: the most there were, in whole numbers
+  long plans = 0;     // times that steps were planned anew for more of them
+};
+
 /// What contact has done in a run, steps that were undone included.
 struct ContactCounts {
   long pairs = 0;       // of particle and obstacle, that were tested; of surfaces: that were too near
@@ -26,7 +33,8 @@ struct ContactCounts {
   double normal_work = 0, friction_work = 0;  // on E, relative to the obstacles [J]
   double obstacle_work = 0;                   // of obstacles in motion on the particles [J]
   double largest_rise = 0;                    // of E by contact in one step [J]
-  std::optional<SurfaceCounts> surfaces{};    // where there are any
+  std::optional<SurfaceCounts> surfaces{};    // where there are any, by impulses
+  std::optional<SpringCounts> springs{};      // or by springs
 };
 
 /// A filter that says what contact has cost.
@@ -36,8 +44,14 @@ class ContactFilter : public StepFilter {
   /// Goes on counting from there.
   void set_counts(const ContactCounts& counts) { counts_ = counts; }
 
+  /// Asked where there are more contacts at a particle than ever before, by springs between surfaces: where
+  /// the answer is no, the step is taken back for another plan (Filtered::outgrown).
+  using IsPlannedFor = std::function<bool(long contacts)>;
+  void plan_for(IsPlannedFor is_planned_for) { is_planned_for_ = std::move(is_planned_for); }
+
  protected:
   ContactCounts counts_;
+  IsPlannedFor is_planned_for_;
 };
 
 /// For states of three entries a particle, with one mass each [kg]. Null where nothing is to be done between

@@ -10,12 +10,6 @@
 namespace springstab {
 namespace {
 
-const Penalty& penalty_of(const Contact& contact) {
-  const auto* penalty = std::get_if<Penalty>(&contact.model);
-  if (!penalty) throw std::invalid_argument("the contact is by impulses, expected a penalty");
-  return *penalty;
-}
-
 // Calls visit(gap) for every obstacle that a particle is in.
 template <class Visit>
 void for_each_touch(const Contact& contact, const Eigen::Vector3d& x, const Visit& visit) {
@@ -66,6 +60,12 @@ class ContactDampers final : public DampingTerm {
 };
 
 }  // namespace
+
+const Penalty& penalty_of(const Contact& contact) {
+  const auto* penalty = std::get_if<Penalty>(&contact.model);
+  if (!penalty) throw std::invalid_argument("the contact is by impulses, expected a penalty");
+  return *penalty;
+}
 
 TermMaker penalty_terms(const Contact& contact) {
   const Penalty penalty = penalty_of(contact);

@@ -9,8 +9,11 @@
 
 namespace springstab {
 
-/// For Scene::add. Throws std::invalid_argument where the contact is no penalty or an obstacle moves: a
-/// scene's forces do not know the time.
+/// Throws std::invalid_argument where the contact is by impulses.
+const Penalty& penalty_of(const Contact& contact);
+
+/// For Scene::add, of planes and balls. Throws std::invalid_argument where the contact is no penalty or an
+/// obstacle moves: a scene's forces do not know the time.
 TermMaker penalty_terms(const Contact& contact);
 
 /// Friction between steps: an impulse of at most μ h k_c |gap| (friction.h) against the slip.

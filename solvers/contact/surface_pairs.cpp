@@ -63,12 +63,12 @@ StepContacts SurfacePairs::step(PlaceList x0, PlaceList x1, double distance) {
     kept.normal = n.cast<float>();
     if (closest.difference.squaredNorm() <= distance * distance) {
       const Eigen::Vector3d normal = n.isZero(0) ? normal_of_touch(kind, at) : n;
-      p.proximities.push_back({particles, closest.weights, normal, normal.dot(closest.difference), 0});
+      p.proximities.push_back({particles, closest.weights, normal, normal.dot(closest.difference), 0, kind});
     }
     if (!moves || !may_meet) return;
     if (const auto impact = first_impact(kind, places_of(particles, x0), at))
       p.collisions.push_back({particles, impact->places.weights, impact->normal,
-                              impact->normal.dot(impact->places.difference), impact->time});
+                              impact->normal.dot(impact->places.difference), impact->time, kind});
   });
   p.collisions.reserve(p.proximities.capacity());  // once for all
   return {p.collisions, p.proximities};

@@ -21,6 +21,7 @@
 #include <span>
 
 #include "solvers/contact/box_pairs.h"
+#include "solvers/contact/closest_places.h"
 #include "solvers/contact/first_impact.h"
 #include "solvers/contact/surface.h"
 
@@ -35,6 +36,7 @@ struct SurfaceContact {
   Eigen::Vector3d normal;         // n, a unit vector, from the second one to the first, as before the contact
   double gap;                     // n·Σ w x [m]; of collisions at the time of impact, 0 but for tolerance
   double time;                    // of impact, in [0, 1] of the step; 0 of proximities
+  PairKind kind = PairKind::vertex_face;
 };
 
 /// Lists that the next call of whatever kind overwrites.

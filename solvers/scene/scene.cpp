@@ -100,8 +100,11 @@ void Scene::number_particles(const std::vector<Eigen::Vector3d>& rest, const std
   pinned_velocity_.assign(pinned_.size(), 0.0);
 }
 
-void Scene::make_patterns() {
-  if (has_matrices()) return;
+void Scene::make_patterns(const ParticleField& x) {
+  bool changed = !has_matrices();
+  for (const auto& term : terms_.elastic) changed = term->couple_at(x) || changed;
+  for (const auto& term : terms_.damping) changed = term->couple_at(x) || changed;
+  if (!changed) return;
   stiffness_pattern_ = std::make_shared<BlockPattern>(free_count_, all_couplings(terms_.elastic));
   for (const auto& term : terms_.elastic) term->bind(stiffness_pattern_);
   if (terms_.damping.empty()) return;
@@ -171,12 +174,12 @@ void Scene::linearize(const Vector& x, const Vector& v, Linearization<Vector>& l
 }
 
 void Scene::linearize(const Vector& x, const Vector&, std::shared_ptr<BlockLinearSystem>& linear) {
-  make_patterns();
+  const ParticleField positions = position_field(x);
+  make_patterns(positions);
   if (!linear || linear.use_count() > 1 || linear->stiffness().pattern() != stiffness_pattern_)
     linear = std::make_shared<BlockLinearSystem>(mass_, damping_, stiffness_pattern_, damping_pattern_);
   linear->set_damping(damping_);
   linear->solver = solver_;
-  const ParticleField positions = position_field(x);
   BlockSparseMatrix& stiffness = linear->stiffness();
   stiffness.set_zero();
   for (const auto& term : terms_.elastic) {

@@ -98,7 +98,7 @@ class Scene final : public System {
  private:
   void number_particles(const std::vector<Eigen::Vector3d>& rest, const std::vector<double>& mass,
                         const std::vector<int>& pinned);
-  void make_patterns();
+  void make_patterns(const ParticleField& x);
 
   int free_count_ = 0;
   std::vector<int> number_;              // particle -> its place: free ones first, then pinned ones
@@ -111,7 +111,7 @@ class Scene final : public System {
   SolverOptions solver_;
   std::vector<double> mass_, inverse_mass_;  // of the free particles [kg, 1/kg]
   SceneTerms terms_;
-  SharedPattern stiffness_pattern_, damping_pattern_;  // none until a linearization is asked for
+  SharedPattern stiffness_pattern_, damping_pattern_;  // of the last linearization; none before
 };
 
 }  // namespace springstab

@@ -55,8 +55,11 @@ class ElasticTerm {
     add_stiffness_times(x, v, -alpha, force);
   }
   virtual Couplings couplings() const = 0;
-  /// Lets a term look up where its blocks are: called once, with the pattern of the matrices that
-  /// add_stiffness will be given; or after `unbind`, which frees what that took.
+  /// Of a term whose elements change with x: lets couplings() be those at x, and says whether they are others
+  /// than before.
+  virtual bool couple_at(const ParticleField&) { return false; }
+  /// Lets a term look up where its blocks are: called with each pattern of the matrices that add_stiffness
+  /// will be given, and again after `unbind`, which frees what that took.
   virtual void bind(const SharedPattern&) {}
   virtual void unbind() {}
   /// stiffness += K(x) [N/m], exact, not projected to be positive semidefinite.
@@ -75,6 +78,7 @@ class DampingTerm {
   /// force -= C(x) v [N].
   virtual void add_force(const ParticleField& x, const ParticleField& v, double* force) const = 0;
   virtual Couplings couplings() const = 0;
+  virtual bool couple_at(const ParticleField&) { return false; }
   /// Likewise with the pattern of those that add_damping will be given.
   virtual void bind(const SharedPattern&) {}
   virtual void unbind() {}

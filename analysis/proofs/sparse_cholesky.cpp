@@ -50,7 +50,10 @@ SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 bool SparseCholesky::analyze(const SparseMatrix& pattern) {
   Engine& e = *engine_;
   e.size = pattern.rows();
-  if (pattern.rows() > unknowns_limit) return false;
+  // Of more, only what hardly fills has a factor that is small enough, and an analysis takes ten times them.
+  constexpr double most_analyzed = entries_limit / 2;
+  if (pattern.rows() > unknowns_limit || static_cast<double>(pattern.nonZeros()) > most_analyzed)
+    return false;
   if (!e.entries) {
     if (pattern.rows() < blocked_from) {
       e.entries = e.unblocked.emplace(pattern).entries();

@@ -139,7 +139,10 @@ void ParticlePairs::bind(const SharedPattern& pattern) {
 
 void ParticlePairs::unbind() {
   pattern_ = nullptr;
-  place_ = {}, incident_start_ = {}, incident_ = {}, kept_ = {};
+  place_ = std::vector<long>();  // {} alone would keep the memory
+  incident_start_ = std::vector<long>();
+  incident_ = std::vector<Incident>();
+  kept_ = std::vector<Kept>();
 }
 
 template <class At>

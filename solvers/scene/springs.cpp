@@ -130,8 +130,7 @@ Couplings ParticlePairs::couplings() const {
 void ParticlePairs::bind(const SharedPattern& pattern) {
   prepare_blocks();
   pattern_ = pattern;
-  place_.clear();
-  place_.reserve(incident_.size());
+  place_.clear(), place_.reserve(incident_.size());
   for (int i = 0; i < free_count_; ++i)
     for (long m = incident_start_[i]; m < incident_start_[i + 1]; ++m)
       place_.push_back(find_place(*pattern, i, incident_[m].other));
@@ -139,10 +138,8 @@ void ParticlePairs::bind(const SharedPattern& pattern) {
 
 void ParticlePairs::unbind() {
   pattern_ = nullptr;
-  place_ = std::vector<long>();  // {} alone would keep the memory
-  incident_start_ = std::vector<long>();
-  incident_ = std::vector<Incident>();
-  kept_ = std::vector<Kept>();
+  std::vector<long>().swap(place_), std::vector<long>().swap(incident_start_);  // = {} keeps the memory
+  std::vector<Incident>().swap(incident_), std::vector<Kept>().swap(kept_);
 }
 
 template <class At>
@@ -212,8 +209,7 @@ void ParticlePairs::add_kept_blocks(BlockSparseMatrix& matrix) const {
 }
 
 Springs::Springs(const std::vector<Spring>& springs, int free_count) : pairs_(springs, free_count) {
-  stiffness_.reserve(springs.size());
-  rest_length_.reserve(springs.size());
+  stiffness_.reserve(springs.size()), rest_length_.reserve(springs.size());
   for (const Spring& s : springs) {
     stiffness_.push_back(s.stiffness);
     rest_length_.push_back(s.rest_length);

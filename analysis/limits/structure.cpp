@@ -91,7 +91,7 @@ Structure structure_of(Scene& scene, const State<Vector>& state) {
   const auto linear = scene.linearization(state);
   Structure structure{{}, damping_of(scene)};
   StructuralMatrices& s = structure.matrices;
-  s.stiffness = linear->stiffness().to_sparse();
+  linear->stiffness().to_sparse().swap(s.stiffness);  // Eigen would copy it
   s.mass = lumped_mass(linear->mass());
   if (const BlockSparseMatrix* own = linear->own_damping())
     s.damping = linear->damping().d0 * s.mass + linear->damping().alpha * s.stiffness + own->to_sparse();

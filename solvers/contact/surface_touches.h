@@ -1,6 +1,6 @@
 // What of a cloth's surface touches itself and meshes at rest: places nearer to each other than the
 // thickness, each counted once. Of a vertex v and the faces that it is no corner of,
-//     Σ E(v, face) - Σ E(v, edge between two of them) + Σ E(v, vertex within them) - …
+//     Σ E(v, face) - Σ E(v, edge between two of them) + Σ E(v, vertex within them)
 // counts what is closest to v once wherever that is on an edge or a vertex, which are of several faces
 // (inclusion and exclusion: a part of the surface counts 1 - Σ of the counts of those it is part of). It goes
 // over from face to face without a jump of its gradient, for a distance from a convex part has none. Of

@@ -1,6 +1,6 @@
 // Springs between two places of surfaces that are nearer to each other than the thickness t: the energy of
-// one touch, its derivatives, and its linearization. With N_k the vectors u, w, d of closest_places.h, all is
-// a function of their six products, of which the derivatives are exact (jet.h):
+// one touch, its derivatives, and its linearization. It is a function of the six products of the directions
+// u, w and d (closest_places.h), and so its derivatives are exact (jet.h):
 //     E = c s ½ k_c (t - |Δ|)²,   Δ = Σ w_i x_i between the closest places, w their weights,
 //     s = 1 of a vertex,   s = sin²θ · 16 a²(1-a)² · 16 b²(1-b)² of two edges at the angle θ that come
 //     closest at the parts a and b of them: nothing where one of these is a vertex or they are parallel, so

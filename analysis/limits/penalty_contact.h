@@ -1,8 +1,8 @@
 // Limits with contact by springs k_c and dampers d_c (solvers/contact/penalty.h): with at most c fixed
 // obstacles at a particle, in every contact state
 //     K_contact ⪯ K + c k_c,   D_contact ⪯ D + c d_c + α c k_c,
-// and symplectic Euler's limit falls monotonically when K or D grows. Contact between surfaces adds twice that
-// while its normals and weights stay (solvers/contact/surface_penalty.h).
+// and symplectic Euler's limit falls monotonically when K or D grows. Contact between surfaces adds twice
+// that while its normals and weights stay (solvers/contact/surface_penalty.h).
 #pragma once
 
 #include "analysis/limits/structure.h"

@@ -55,9 +55,11 @@ bool SparseCholesky::analyze(const SparseMatrix& pattern) {
   if (pattern.rows() > unknowns_limit || static_cast<double>(pattern.nonZeros()) > most_analyzed)
     return false;
   if (!e.entries) {
-    if (pattern.rows() < blocked_from) {
-      e.entries = e.unblocked.emplace(pattern).entries();
-    } else {
+    constexpr double much_fill = 300;  // entries a row, as of solids
+    const auto rows = static_cast<double>(pattern.rows());
+    if (pattern.rows() < blocked_from) e.entries = e.unblocked.emplace(pattern).entries();
+    if (!e.entries || (has_cholmod() && *e.entries > much_fill * rows)) {
+      e.unblocked.reset();
       e.entries = e.blocked.emplace(pattern).entries();
     }
     if (*e.entries > entries_limit) e.unblocked.reset(), e.blocked.reset();

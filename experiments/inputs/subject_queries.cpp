@@ -29,9 +29,10 @@ std::pair<ClothSurface, SurfaceNames> Subject::contact_surface(const Scene& scen
   SurfaceNames names;
   const std::vector<Eigen::Vector3d> places = scene.positions(scene.rest_state().x);
   for (const int i : pinned_) surface.pinned.push_back(places[i]);
-  for (int f = 0; f < std::ssize(faces()); ++f)
-    for (std::size_t c = 2; c < faces_[f].size(); ++c) {
-      std::array<int, 3> triangle{faces_[f][0], faces_[f][c - 1], faces_[f][c]};
+  const Faces& all = faces();
+  for (int f = 0; f < std::ssize(all); ++f)
+    for (std::size_t c = 2; c < all[f].size(); ++c) {
+      std::array<int, 3> triangle{all[f][0], all[f][c - 1], all[f][c]};
       for (int& corner : triangle) corner = node[mesh_file_ ? mesh_file_->repair.vertex[corner] : corner];
       if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) continue;
       surface.triangles.push_back(triangle);

@@ -125,10 +125,9 @@ SolveReport BlockLinearSystem::solve_by_block_jacobi(const Shift& shift, Vector&
     });
     return dot.sum();
   };
-  const auto precondition = [&](const Vector& r, Vector& z) {
-    z.resize(size());
+  const auto precondition = [&](const IndexRange& range, const Vector& r, Vector& z) {
     Eigen::Array3d dot = Eigen::Array3d::Zero();
-    for (long i = 0; i < stiffness_.rows(); ++i) {
+    for (long i = range.first / 3; i < range.last / 3; ++i) {
       const Eigen::Vector3d ri = r.segment<3>(3 * i);
       const Eigen::Vector3d zi = Eigen::Map<const Block3>(&inverse_blocks_[9 * i]) * ri;
       z.segment<3>(3 * i) = zi;

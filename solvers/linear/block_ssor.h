@@ -7,12 +7,22 @@
 // which reads L̂ twice: as much memory as one product with H, preconditioner included. pᵀĤp is the curvature
 // of H along C⁻ᵀt, so an indefinite H shows as it does without a preconditioner. Whenever the diagonal blocks
 // are positive definite so is the preconditioner; unlike an incomplete factorization it cannot break down.
+//
+// L is what lies below the diagonal in an order that two threads can follow: the rows from both ends inwards,
+// and last some in the middle, a bandwidth of them, that keep the two sides from meeting. Stored are the blocks
+// below the diagonal of the matrix as it is. From the lower end inwards these are the transposed ones of L,
+// and what is a sum over a row on the one side is one over a column on the other. The sides have about as many
+// blocks, whatever the number of threads is, and so results do not depend on it. It takes a few iterations in
+// a hundred more than one sweep from end to end, and each is shorter on one thread too: where a row waits for
+// the one before, there is one of the other side to do.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "solvers/linear/block_sparse_matrix.h"
 #include "solvers/system.h"
+#include "solvers/team.h"
 
 namespace springstab {
 
@@ -34,19 +44,32 @@ class BlockSsor {
   /// out = Ĥ in; returns their scalar product.
   double multiply(const Vector& in, Vector& out);
 
- private:
-  void set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping);
-  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  template <class Right, class Take>
-  void solve(const Right& right, const Take& take);
-  template <class Right, class Take>
-  void solve_transposed(const Right& right, const Take& take);
+  /// The rows that come last; those before them ascend, those after them descend.
+  const IndexRange& middle() const { return rows_of_[middle_part]; }
 
+ private:
+  enum Part { upper_side, lower_side, middle_part };
+
+  void set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping);
+  void divide();
+  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
+  template <class Work>
+  void for_both_sides(const Work& work);
+  template <class Right, class Take>
+  void gather(const IndexRange& range, const Right& right, const Take& take);
+  template <class Right, class Take>
+  void scatter(const IndexRange& range, const Right& right, const Take& take);
+  template <class Right, class Take>
+  void solve(Part part, const Right& right, const Take& take);
+  template <class Right, class Take>
+  void solve_transposed(Part part, const Right& right, const Take& take);
+
+  std::array<IndexRange, 3> rows_of_{};  // the parts
   std::vector<long> row_start_;  // L̂, strictly below the diagonal, in compressed rows like BlockSparseMatrix
   std::vector<int> column_;
   std::vector<double> value_;
   std::vector<double> factor_;  // C⁻ᵀ, 12 per row: three rows of four, the last column zero
-  Vector solution_, sum_;       // of solve; of solve_transposed, all zeros in between
+  Vector solution_, sum_;       // what rows still to come gather from; what was scattered to them, or zeros
 };
 
 }  // namespace springstab

@@ -64,7 +64,7 @@ void expect_motion(Problem& problem, const Trajectory& trajectory) {
                      text("nothing moves in %g s, expected motion to tell errors from", problem.duration()));
 }
 
-std::optional<Errors> check(Problem& problem, const Trajectory& reference) {
+std::optional<Errors> check([[maybe_unused]] Problem& problem, [[maybe_unused]] const Trajectory& reference) {
 #ifdef SPRINGSTAB_ODEINT
   const Attempt attempt = attempt_bulirsch_stoer(problem, third, check_seconds);
   if (attempt.outcome == Outcome::finished) return errors_of(problem.system(), attempt.trajectory, reference);

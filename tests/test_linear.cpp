@@ -60,11 +60,13 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// Pairs that repeat themselves, the other way round too, and couple a row with itself.
+/// Pairs that repeat themselves, the other way round too, and couple a row with itself: rows no farther apart
+/// than five, where there are more than 20.
 std::vector<IndexPair> random_couplings(int rows, int count, Random& random) {
+  const int reach = rows > 20 ? 5 : rows;
   std::vector<IndexPair> pairs;
   for (int k = 0; k < count; ++k) {
-    const int i = random.index(rows), j = random.index(rows);
+    const int i = random.index(rows), j = std::max(0, i - random.index(reach));
     pairs.emplace_back(i, j);
     if (k % 3 == 0) pairs.emplace_back(j, i);
     if (k % 4 == 0) pairs.emplace_back(i, i);
@@ -134,7 +136,7 @@ const RayleighDamping dampings[] = {{0, 0}, {0.7, 0}, {0, 0.2}, {0.7, 0.2}};
 void for_each_system(const std::function<void(BlockLinearSystem&, Random&)>& visit) {
   for (const RayleighDamping& damping : dampings)
     for (const bool own : {false, true})
-      for (const int particles : {1, 2, 9, 20})
+      for (const int particles : {1, 2, 9, 20, 40})
         BOOST_TEST_CONTEXT("d0 " << damping.d0 << ", alpha " << damping.alpha << ", own damping " << own
                                  << ", " << particles << " particles") {
           Random random(static_cast<std::uint64_t>(particles));
@@ -715,18 +717,67 @@ BOOST_AUTO_TEST_CASE(a_factorization_orders_the_rows_to_keep_the_factor_sparse) 
   }
 }
 
-// ‖b - Hy‖ in the norm of the inverse of (D' + L) D'⁻¹ (D' + Lᵀ), D' = D/ω.
+/// The rows of a matrix in the order in which the preconditioner has them below one another.
+std::vector<int> sweep_order(const BlockSsor& ssor, int rows) {
+  const auto [first, last] = ssor.middle();
+  std::vector<int> order;
+  for (int i = 0; i < first; ++i) order.push_back(i);
+  for (int i = rows - 1; i >= last; --i) order.push_back(i);
+  for (auto i = static_cast<int>(first); i < last; ++i) order.push_back(i);
+  return order;
+}
+
+// Two sides that have nothing in common, about as large, where the rows reach no farther than a band.
+BOOST_AUTO_TEST_CASE(a_sweep_has_two_sides_that_do_not_touch) {
+  Random random(30);
+  for (const int rows : {1, 2, 3, 10, 200}) BOOST_TEST_CONTEXT(rows << " rows") {
+      BlockLinearSystem system = random_system(rows, {}, true, random);
+      BlockSsor ssor;
+      const BlockSparseMatrix &k = system.stiffness(), &c = *system.own_damping();
+      BOOST_REQUIRE(ssor.set(1, system.mass(), 1, k, 1, &c));
+      const auto [first, last] = ssor.middle();
+      BOOST_TEST((0 <= first && first <= last && last <= rows));
+      long upper = 0, lower = 0;
+      for (const BlockSparseMatrix* a : {&k, &c})
+        for (int i = 0; i < rows; ++i)
+          for (long place = a->row_begin(i); place < a->diagonal(i); ++place) {
+            BOOST_TEST((a->column(place) >= first || i < last));
+            (i < first ? upper : lower) += i < first || i >= last;
+          }
+      if (rows == 200) {
+        BOOST_TEST(last - first <= 10);
+        BOOST_TEST(std::abs(upper - lower) <= 0.1 * static_cast<double>(upper));
+      }
+    }
+  // Where each row is coupled to the first there is no more than one side.
+  std::vector<IndexPair> star;
+  for (int i = 1; i < 30; ++i) star.emplace_back(i, 0);
+  BlockSparseMatrix k(30, star);
+  fill_definite(k, 1, random);
+  BlockSsor ssor;
+  BOOST_REQUIRE(ssor.set(1, std::vector<double>(30, 1.0), 1, k, 0, nullptr));
+  BOOST_TEST((ssor.middle().first == 0 && ssor.middle().last == 30));
+}
+
+// ‖b - Hy‖ in the norm of the inverse of (D' + L) D'⁻¹ (D' + Lᵀ), D' = D/ω, L below it in the sweep's order.
 BOOST_AUTO_TEST_CASE(over_relaxation_solves_to_its_tolerance_in_its_norm) {
   for_each_system([](BlockLinearSystem& system, Random& random) {
     const DenseSystem dense(system);
     const Vector rhs = random.vector(system.size());
     for (const Shift& shift : some_shifts) {
       const Dense shifted = dense.shifted(shift);
-      Dense diagonal = Dense::Zero(system.size(), system.size()),
-            lower = shifted.triangularView<Eigen::Lower>();
-      for (Eigen::Index i = 0; i < system.size(); i += 3) {
-        diagonal.block<3, 3>(i, i) = shifted.block<3, 3>(i, i) / BlockSsor::relaxation;
-        lower.block<3, 3>(i, i) = diagonal.block<3, 3>(i, i);
+      BlockSsor ssor;
+      const int particles = system.stiffness().rows();
+      BOOST_REQUIRE(ssor.set(shift.mass + shift.damping * system.damping().d0, system.mass(),
+                             shift.of_stiffness(system.damping().alpha), system.stiffness(), shift.damping,
+                             system.own_damping()));
+      Dense diagonal = Dense::Zero(system.size(), system.size()), lower = diagonal;
+      std::vector<int> before;
+      for (const int i : sweep_order(ssor, particles)) {
+        for (const int j : before) lower.block<3, 3>(3 * i, 3 * j) = shifted.block<3, 3>(3 * i, 3 * j);
+        diagonal.block<3, 3>(3 * i, 3 * i) = shifted.block<3, 3>(3 * i, 3 * i) / BlockSsor::relaxation;
+        lower.block<3, 3>(3 * i, 3 * i) = diagonal.block<3, 3>(3 * i, 3 * i);
+        before.push_back(i);
       }
       const Dense p = lower * diagonal.llt().solve(Dense(lower.transpose()));
       const auto norm = [&](const Vector& r) { return std::sqrt(r.dot(p.llt().solve(r))); };
@@ -749,31 +800,32 @@ BOOST_AUTO_TEST_CASE(over_relaxation_solves_to_its_tolerance_in_its_norm) {
 // Ĥ is symmetric, and its curvature along ŷ = (1 + L̂)ᵀ Cᵀ y that of H along y, whether positive or not.
 BOOST_AUTO_TEST_CASE(the_over_relaxed_operator_is_symmetric_with_the_curvature_of_the_matrix) {
   Random random(21);
-  BlockLinearSystem system = random_system(14, {}, true, random);
-  for (const double shift : {1.0, -0.05}) {
-    const BlockSparseMatrix& k = system.stiffness();
-    const BlockSparseMatrix* c = system.own_damping();
-    Dense h = shift * (Dense(k.to_sparse()) + 0.3 * Dense(c->to_sparse()));
-    h += 7 * Dense(lumped_mass(system.mass()));
-    BlockSsor ssor;
-    const bool usable = ssor.set(7, system.mass(), shift, k, 0.3 * shift, c);
-    if (shift > 0) BOOST_REQUIRE(usable);
-    if (!usable) continue;
-    const auto fours = [&] {
-      Vector u = random.vector(4 * k.rows());
-      for (Eigen::Index i = 3; i < u.size(); i += 4) u[i] = 0;
-      return u;
-    };
-    const Vector p = fours(), q = fours();
-    Vector hp, hq, y;
-    const double curvature = ssor.multiply(p, hp);
-    ssor.multiply(q, hq);
-    BOOST_TEST(q.dot(hp) == p.dot(hq), boost::test_tools::tolerance(1e-10));
-    BOOST_TEST(curvature == p.dot(hp), boost::test_tools::tolerance(1e-12));
-    ssor.transform_back(p, y);
-    BOOST_TEST(curvature == y.dot(h * y), boost::test_tools::tolerance(1e-10));
-    for (Eigen::Index i = 3; i < hp.size(); i += 4) BOOST_TEST(hp[i] == 0);
-  }
+  for (const int particles : {14, 40})
+    for (const double shift : {1.0, -0.05}) {
+      BlockLinearSystem system = random_system(particles, {}, true, random);
+      const BlockSparseMatrix& k = system.stiffness();
+      const BlockSparseMatrix* c = system.own_damping();
+      Dense h = shift * (Dense(k.to_sparse()) + 0.3 * Dense(c->to_sparse()));
+      h += 7 * Dense(lumped_mass(system.mass()));
+      BlockSsor ssor;
+      const bool usable = ssor.set(7, system.mass(), shift, k, 0.3 * shift, c);
+      if (shift > 0) BOOST_REQUIRE(usable);
+      if (!usable) continue;
+      const auto fours = [&] {
+        Vector u = random.vector(4 * k.rows());
+        for (Eigen::Index i = 3; i < u.size(); i += 4) u[i] = 0;
+        return u;
+      };
+      const Vector p = fours(), q = fours();
+      Vector hp, hq, y;
+      const double curvature = ssor.multiply(p, hp);
+      ssor.multiply(q, hq);
+      BOOST_TEST(q.dot(hp) == p.dot(hq), boost::test_tools::tolerance(1e-10));
+      BOOST_TEST(curvature == p.dot(hp), boost::test_tools::tolerance(1e-12));
+      ssor.transform_back(p, y);
+      BOOST_TEST(curvature == y.dot(h * y), boost::test_tools::tolerance(1e-10));
+      for (Eigen::Index i = 3; i < hp.size(); i += 4) BOOST_TEST(hp[i] == 0);
+    }
 }
 
 BOOST_AUTO_TEST_CASE(over_relaxation_takes_fewer_iterations_to_the_same_solution) {

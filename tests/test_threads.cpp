@@ -288,4 +288,30 @@ BOOST_AUTO_TEST_CASE(solids_are_the_same_bits) {
   expect_same_bits(solid, {0, 5, 77, 999}, 1, 20. * static_cast<double>(solid.altitudes.size()));
 }
 
+// With either preconditioner, also where a matrix is too small to be shared, or its vectors are.
+BOOST_AUTO_TEST_CASE(conjugate_gradients_are_the_same_bits) {
+  Random random(12);
+  for (const int rows : {5, 40, 131}) {
+    const SpringNet net = make_net(Grid{.rows = rows, .columns = 128},
+                                   {.stiffness = {200, 100, 20}, .damping = {0.1, 0.2, 0.3}});
+    Scene scene(net, {0, 1, 64}, {0, -9.81, 0}, {.d0 = 1, .alpha = 1e-3});
+    for (const Preconditioner preconditioner : {Preconditioner::block_ssor, Preconditioner::block_jacobi}) {
+      scene.solver() = {.tolerance = 1e-3, .max_iterations = 30, .preconditioner = preconditioner};
+      const auto linear = scene.linearization(scene.rest_state());
+      const Vector right = wild(random, scene.size());
+      const auto solve = [&](Vector& out) {
+        return linear->solve_shifted({1, 0.01, 1e-4}, right, out).iterations;
+      };
+      Vector one, again;
+      const long iterations = solve(one);
+      BOOST_TEST(iterations > 1);
+      for (const int threads : {2, 3, 5}) {
+        const LoopThreads several(threads);
+        BOOST_TEST(solve(again) == iterations);
+        BOOST_TEST(same_bits(again, one), rows << " rows, " << threads << " threads");
+      }
+    }
+  }
+}
+
 BOOST_AUTO_TEST_SUITE_END()

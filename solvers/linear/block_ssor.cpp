@@ -23,6 +23,45 @@ struct Rows {
   Four transposed_times(const double* w) const { return r0 * w[0] + r1 * w[1] + r2 * w[2]; }
 };
 
+// L̂ and what its rows leave for each other. By value: the compiler takes anything in memory for changed
+// wherever four numbers are stored.
+struct Triangle {
+  const long* row_start;
+  const int* column;
+  const double* value;
+  double *solution, *sum;
+
+  // u_i = right(i) - Σ L̂_ij u_j with the solution's u_j, in fours; returns take(i, u_i).
+  template <class Right, class Take>
+  Four gather(long i, const Right& right, const Take& take) const {
+    const double* b = value + 9 * row_start[i];
+    Four s0 = Four::Zero(), s1 = s0, s2 = s0;
+    for (long k = row_start[i]; k < row_start[i + 1]; ++k, b += 9) {
+      const ConstFourAt uj(solution + 4 * static_cast<long>(column[k]));
+      const Rows row(b);
+      s0 += row.r0 * uj;
+      s1 += row.r1 * uj;
+      s2 += row.r2 * uj;
+    }
+    const Four ui = right(i) - sums_of_three(s0, s1, s2);
+    FourAt{solution + 4 * i} = ui;
+    return take(i, ui);
+  }
+
+  // u_i = right(i) - what was scattered to it, in fours, and L̂_ijᵀ u_i scattered to each j; returns
+  // take(i, u_i).
+  template <class Right, class Take>
+  Four scatter(long i, const Right& right, const Take& take) const {
+    Four ui = right(i) - ConstFourAt(sum + 4 * i);
+    ui[3] = 0;
+    FourAt{sum + 4 * i} = Four::Zero();
+    const Four taken = take(i, ui);
+    for (long k = row_start[i]; k < row_start[i + 1]; ++k)
+      FourAt{sum + 4 * static_cast<long>(column[k])} += Rows(value + 9 * k).transposed_times(ui.data());
+    return taken;
+  }
+};
+
 }  // namespace
 
 void BlockSsor::set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping) {
@@ -47,7 +86,8 @@ void BlockSsor::set_pattern(const BlockSparseMatrix& stiffness, const BlockSpars
 void BlockSsor::divide() {
   const long n = rows(), all = row_start_.back();
   rows_of_ = {IndexRange{0, 0}, {n, n}, {0, n}};
-  std::vector<int> reach(static_cast<std::size_t>(n) + 1, static_cast<int>(n));  // of this row and those below
+  std::vector<int> reach(static_cast<std::size_t>(n) + 1,
+                         static_cast<int>(n));  // of this row and those below
   for (long i = n - 1; i >= 0; --i)
     reach[i] = std::min(row_start_[i] < row_start_[i + 1] ? column_[row_start_[i]] : static_cast<int>(i),
                         reach[i + 1]);
@@ -59,15 +99,9 @@ void BlockSsor::divide() {
   }
 }
 
-template <class Work>
-void BlockSsor::for_both_sides(const Work& work) {
-  constexpr double block_cost = 4;  // [ns]
-  if (loop_threads() > 1 && static_cast<double>(column_.size()) * block_cost > worth_sharing) {
-    share(2, [&](int side) { work(static_cast<Part>(side)); });
-  } else {
-    work(upper_side);
-    work(lower_side);
-  }
+bool BlockSsor::worth_two_threads() const {
+  constexpr double block_cost = 4;  // [ns], there and back
+  return loop_threads() > 1 && static_cast<double>(column_.size()) * block_cost > worth_sharing;
 }
 
 bool BlockSsor::set(double m, const std::vector<double>& mass, double k, const BlockSparseMatrix& stiffness,
@@ -105,149 +139,122 @@ bool BlockSsor::set(double m, const std::vector<double>& mass, double k, const B
     }
   };
   bool usable[2] = {true, true};
-  for_both_sides([&](Part side) {
+  const auto set_side = [&](int side) {
     bool all = true;
-    if (side == lower_side)  // whose blocks beside the middle are its own
+    if (side == lower_side)  // whose rows have blocks in the middle's columns
       for (long i = middle().first; i < middle().last; ++i) all = factorize(i) && all;
     for (long i = rows_of_[side].first; i < rows_of_[side].last; ++i) {
       all = factorize(i) && all;
       scale(i);
     }
     usable[side] = all;
-  });
+  };
+  if (worth_two_threads()) {
+    share(2, set_side);
+  } else {
+    for (const int side : {upper_side, lower_side}) set_side(side);
+  }
   for (long i = middle().first; i < middle().last; ++i) scale(i);
   return usable[upper_side] && usable[lower_side];
 }
 
-// u_i = right(i) - Σ L̂_ij u_j with the solution's u_j, i ascending, in fours; then take(i, u_i).
-template <class Right, class Take>
-void BlockSsor::gather(const IndexRange& range, const Right& right, const Take& take) {
-  const double* b = value_.data() + 9 * row_start_[range.first];
-  double* const u = solution_.data();
-  for (long i = range.first; i < range.last; ++i) {
-    Four s0 = Four::Zero(), s1 = s0, s2 = s0;
-    for (long k = row_start_[i]; k < row_start_[i + 1]; ++k, b += 9) {
-      const ConstFourAt uj(u + 4 * static_cast<long>(column_[k]));
-      const Rows row(b);
-      s0 += row.r0 * uj;
-      s1 += row.r1 * uj;
-      s2 += row.r2 * uj;
-    }
-    const Four ui = right(i) - sums_of_three(s0, s1, s2);
-    FourAt{u + 4 * i} = ui;
-    take(i, ui);
-  }
-}
-
-// u_i = right(i) - what was scattered to it, i descending, in fours, and L̂_ijᵀ u_i scattered to each j; then
-// take(i, u_i).
-template <class Right, class Take>
-void BlockSsor::scatter(const IndexRange& range, const Right& right, const Take& take) {
-  double* const sum = sum_.data();
-  for (long i = range.last - 1; i >= range.first; --i) {
-    Four ui = right(i) - ConstFourAt(sum + 4 * i);
-    ui[3] = 0;
-    FourAt{sum + 4 * i} = Four::Zero();
-    take(i, ui);
-    for (long k = row_start_[i]; k < row_start_[i + 1]; ++k)
-      FourAt{sum + 4 * static_cast<long>(column_[k])} += Rows(&value_[9 * k]).transposed_times(ui.data());
-  }
-}
-
-// A part of u = (1 + L̂)⁻¹ r with r_i = right(i) and take(i, u_i); the middle after the sides.
-template <class Right, class Take>
-void BlockSsor::solve(Part part, const Right& right, const Take& take) {
-  const IndexRange& range = rows_of_[part];
-  if (part == upper_side) {
-    gather(range, right, take);
-  } else if (part == lower_side) {
-    scatter(range, right, take);
-  } else {
-    double* const sum = sum_.data();
-    gather(
-        range,
-        [&](long i) -> Four {
-          const Four rest = right(i) - ConstFourAt(sum + 4 * i);
-          FourAt{sum + 4 * i} = Four::Zero();
-          return rest;
-        },
-        take);
-  }
-}
-
-// A part of u = (1 + L̂)⁻ᵀ r; the middle before the sides.
-template <class Right, class Take>
-void BlockSsor::solve_transposed(Part part, const Right& right, const Take& take) {
-  const IndexRange& range = rows_of_[part];
-  if (part == upper_side) {
-    scatter(range, right, take);
-  } else if (part == lower_side) {
-    gather(range, right, take);
-  } else {
-    scatter(range, right, [&](long i, const Four& u) {
-      FourAt{solution_.data() + 4 * i} = u;
-      take(i, u);
+// Of what upper_row(k) and lower_row(k) return, k rows from where their side begins: each side on a thread,
+// or a row of the one and a row of the other in turn. The functions are copied for the reason that Triangle
+// has.
+template <class UpperRow, class LowerRow>
+Four BlockSsor::sum_over_sides(const UpperRow& upper_row, const LowerRow& lower_row) const {
+  const auto length = [&](Part side) { return rows_of_[side].last - rows_of_[side].first; };
+  const long upper = length(upper_side), lower = length(lower_side), both = std::min(upper, lower);
+  const auto rest = [](Four sum, auto row, long first, long last) {
+    for (long k = first; k < last; ++k) sum += row(k);
+    return sum;
+  };
+  if (worth_two_threads()) {
+    Four sums[2];
+    share(2, [&](int side) {
+      sums[side] = side == upper_side ? rest(Four::Zero(), upper_row, 0, upper)
+                                      : rest(Four::Zero(), lower_row, 0, lower);
     });
+    return sums[upper_side] + sums[lower_side];
   }
+  const auto in_turn = [both, upper, lower, rest](auto row, auto other_row) -> Four {
+    Four sum = Four::Zero(), other_sum = sum;
+    for (long k = 0; k < both; ++k) {
+      sum += row(k);
+      other_sum += other_row(k);
+    }
+    return rest(sum, row, both, upper) + rest(other_sum, other_row, both, lower);
+  };
+  return in_turn(upper_row, lower_row);
+}
+
+// u = (1 + L̂)⁻¹ r with r_i = right(i), in fours; returns Σ take(i, u_i).
+template <class Right, class Take>
+Four BlockSsor::solve(const Right& right, const Take& take) {
+  const Triangle l{row_start_.data(), column_.data(), value_.data(), solution_.data(), sum_.data()};
+  const long first = rows_of_[upper_side].first, last = rows_of_[lower_side].last - 1;
+  Four total = sum_over_sides([=](long k) { return l.gather(first + k, right, take); },
+                              [=](long k) { return l.scatter(last - k, right, take); });
+  const auto rest = [&](long i) -> Four {
+    FourAt scattered(l.sum + 4 * i);
+    Four left = right(i) - scattered;
+    left[3] = 0;
+    scattered = Four::Zero();
+    return left;
+  };
+  for (long i = middle().first; i < middle().last; ++i) total += l.gather(i, rest, take);
+  return total;
+}
+
+// u = (1 + L̂)⁻ᵀ r, the same.
+template <class Right, class Take>
+Four BlockSsor::solve_transposed(const Right& right, const Take& take) {
+  const Triangle l{row_start_.data(), column_.data(), value_.data(), solution_.data(), sum_.data()};
+  const auto keep = [&](long i, const Four& u) {
+    FourAt{l.solution + 4 * i} = u;
+    return take(i, u);
+  };
+  Four total = Four::Zero();
+  for (long i = middle().last - 1; i >= middle().first; --i) total += l.scatter(i, right, keep);
+  const long last = rows_of_[upper_side].last - 1, first = rows_of_[lower_side].first;
+  return total + sum_over_sides([=](long k) { return l.scatter(last - k, right, take); },
+                                [=](long k) { return l.gather(first + k, right, take); });
 }
 
 void BlockSsor::transform(const Vector& b, Vector& transformed) {
   transformed.resize(4 * static_cast<long>(rows()));
-  const auto go = [&](Part part) {
-    solve(
-        part,
-        [&](long i) -> Four {  // C⁻¹ b
-          const Eigen::Map<const Eigen::Matrix<double, 4, 3>> inverse(&factor_[12 * i]);
-          return (inverse * b.segment<3>(3 * i)).array();
-        },
-        [&](long i, const Four& u) { FourAt{transformed.data() + 4 * i} = u; });
-  };
-  for_both_sides(go);
-  go(middle_part);
+  solve(
+      [&](long i) -> Four {  // C⁻¹ b
+        const Eigen::Map<const Eigen::Matrix<double, 4, 3>> inverse(&factor_[12 * i]);
+        return (inverse * b.segment<3>(3 * i)).array();
+      },
+      [&](long i, const Four& u) -> Four { return FourAt{transformed.data() + 4 * i} = u; });
 }
 
 void BlockSsor::transform_back(const Vector& transformed, Vector& y) {
   y.resize(3 * static_cast<long>(rows()));
-  const auto go = [&](Part part) {
-    solve_transposed(
-        part, [&](long i) -> Four { return ConstFourAt(transformed.data() + 4 * i); },
-        [&](long i, const Four& u) {  // C⁻ᵀ u
-          const Eigen::Map<const Eigen::Matrix<double, 4, 3>> inverse(&factor_[12 * i]);
-          y.segment<3>(3 * i) = inverse.transpose() * u.matrix();
-        });
-  };
-  go(middle_part);
-  for_both_sides(go);
+  solve_transposed([&](long i) -> Four { return ConstFourAt(transformed.data() + 4 * i); },
+                   [&](long i, const Four& u) {  // C⁻ᵀ u
+                     const Eigen::Map<const Eigen::Matrix<double, 4, 3>> inverse(&factor_[12 * i]);
+                     y.segment<3>(3 * i) = inverse.transpose() * u.matrix();
+                     return u;
+                   });
 }
 
 double BlockSsor::multiply(const Vector& in, Vector& out) {
   out.resize(in.size());
   const double* const p = in.data();
   double* const q = out.data();
-  const auto outwards = [&](Part part) {
-    solve_transposed(
-        part, [&](long i) -> Four { return ConstFourAt(p + 4 * i); },
-        [&](long i, const Four& t) { FourAt{q + 4 * i} = t; });
-  };
-  std::array<double, 3> dots{};
-  const auto inwards = [&](Part part) {
-    Four dot = Four::Zero();
-    solve(
-        part, [&](long i) -> Four { return ConstFourAt(p + 4 * i) - (2 - relaxation) * ConstFourAt(q + 4 * i); },
-        [&](long i, const Four& u) {
-          FourAt qi(q + 4 * i);
-          qi += u;
-          dot += qi * ConstFourAt(p + 4 * i);
-        });
-    dots[part] = dot.sum();
-  };
-  outwards(middle_part);
-  for_both_sides([&](Part side) {
-    outwards(side);
-    inwards(side);
-  });
-  inwards(middle_part);
-  return dots[upper_side] + dots[lower_side] + dots[middle_part];
+  solve_transposed([=](long i) -> Four { return ConstFourAt(p + 4 * i); },
+                   [=](long i, const Four& t) -> Four { return FourAt{q + 4 * i} = t; });
+  const Four dot = solve(
+      [=](long i) -> Four { return ConstFourAt(p + 4 * i) - (2 - relaxation) * ConstFourAt(q + 4 * i); },
+      [=](long i, const Four& u) -> Four {
+        FourAt qi(q + 4 * i);
+        qi += u;
+        return qi * ConstFourAt(p + 4 * i);
+      });
+  return dot.sum();
 }
 
 }  // namespace springstab

@@ -9,18 +9,19 @@
 // are positive definite so is the preconditioner; unlike an incomplete factorization it cannot break down.
 //
 // L is what lies below the diagonal in an order that two threads can follow: the rows from both ends inwards,
-// and last some in the middle, a bandwidth of them, that keep the two sides from meeting. Stored are the blocks
-// below the diagonal of the matrix as it is. From the lower end inwards these are the transposed ones of L,
-// and what is a sum over a row on the one side is one over a column on the other. The sides have about as many
-// blocks, whatever the number of threads is, and so results do not depend on it. It takes a few iterations in
-// a hundred more than one sweep from end to end, and each is shorter on one thread too: where a row waits for
-// the one before, there is one of the other side to do.
+// and last some in the middle, a bandwidth of them, that keep the two sides from meeting. Stored are the
+// blocks below the diagonal of the matrix as it is. From the lower end inwards these are the transposed ones
+// of L, and what is a sum over a row on the one side is one over a column on the other. The sides have about
+// as many blocks, whatever the number of threads is, and so results do not depend on it. It takes a few
+// iterations in a hundred more than one sweep from end to end, and each is shorter on one thread too: where a
+// row waits for the one before, there is one of the other side to do.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "solvers/linear/block_sparse_matrix.h"
+#include "solvers/linear/four.h"
 #include "solvers/system.h"
 #include "solvers/team.h"
 
@@ -53,16 +54,13 @@ class BlockSsor {
   void set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping);
   void divide();
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  template <class Work>
-  void for_both_sides(const Work& work);
+  bool worth_two_threads() const;
+  template <class UpperRow, class LowerRow>
+  Four sum_over_sides(const UpperRow& upper_row, const LowerRow& lower_row) const;
   template <class Right, class Take>
-  void gather(const IndexRange& range, const Right& right, const Take& take);
+  Four solve(const Right& right, const Take& take);
   template <class Right, class Take>
-  void scatter(const IndexRange& range, const Right& right, const Take& take);
-  template <class Right, class Take>
-  void solve(Part part, const Right& right, const Take& take);
-  template <class Right, class Take>
-  void solve_transposed(Part part, const Right& right, const Take& take);
+  Four solve_transposed(const Right& right, const Take& take);
 
   std::array<IndexRange, 3> rows_of_{};  // the parts
   std::vector<long> row_start_;  // L̂, strictly below the diagonal, in compressed rows like BlockSparseMatrix

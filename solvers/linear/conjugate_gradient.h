@@ -81,7 +81,7 @@ class ConjugateGradient {
 
   template <class Work>
   void for_pieces(const Work& work) const {
-    constexpr double cost = 200;  // of a piece, about [ns]
+    constexpr double cost = 800;  // of a piece, about [ns]
     const long n = r_.size();
     share_range(pieces(), cost, [&](long first, long last) {
       for (long i = first; i < last; ++i) work(i, IndexRange{i * piece, std::min(n, (i + 1) * piece)});

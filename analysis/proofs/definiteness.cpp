@@ -44,9 +44,9 @@ DefinitenessProof::DefinitenessProof(const SparseMatrix& stiffness, const Sparse
   take_matrices();
 }
 
-DefinitenessProof::DefinitenessProof(StructuralMatrices s, std::shared_ptr<const Pieces> own,
+DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
                                      std::function<bool(bool)> all_of)
-    : DefinitenessProof(std::move(s)) {
+    : DefinitenessProof(s.stiffness, s.mass, s.has_damping() ? &s.damping : nullptr) {
   pieces_ = std::move(own);
   all_of_ = std::move(all_of);
 }

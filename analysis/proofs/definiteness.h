@@ -28,10 +28,10 @@ class DefinitenessProof {
   DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass,
                     const SparseMatrix* damping = nullptr, double loss = usual_loss);
 
-  /// Of a structure whose matrices are distributed: `s` are rows and columns of it, those that `own` pieces
-  /// and their neighbours need (Pieces), and `all_of` says whether something is true of everybody, who is
-  /// asked the same in the same order. What holds() says is of the whole structure.
-  DefinitenessProof(StructuralMatrices s, std::shared_ptr<const Pieces> own,
+  /// Of a structure whose matrices are distributed: `s`, which must outlive it, are rows and columns of it,
+  /// those that `own` pieces and their neighbours need (Pieces), and `all_of` says whether something is true
+  /// of everybody, who is asked the same in the same order. What holds() says is of the whole structure.
+  DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
                     std::function<bool(bool)> all_of);
 
   /// A DefinitenessTest.

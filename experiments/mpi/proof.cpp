@@ -10,13 +10,14 @@
 namespace springstab::mpi {
 namespace {
 
-// Rows and columns of a matrix, which each rank chooses for itself.
-SparseMatrix part_of(Mat a, IS chosen) {
+// Rows and columns of a matrix, which each rank chooses for itself. (A sparse matrix of Eigen's is copied
+// where others are moved, so large ones are filled where they stay.)
+void take_part(Mat a, IS chosen, SparseMatrix& part) {
   Mat* parts = nullptr;
   petsc(MatCreateSubMatrices(a, 1, &chosen, &chosen, MAT_INITIAL_MATRIX, &parts));
   PetscInt size = 0;
   petsc(ISGetLocalSize(chosen, &size));
-  SparseMatrix part(size, size);
+  part.resize(size, size);
   long entries = 0;
   for (PetscInt i = 0; i < size; ++i) entries += Row(parts[0], i).size();
   part.reserve(entries);
@@ -27,20 +28,17 @@ SparseMatrix part_of(Mat a, IS chosen) {
   }
   part.finalize();
   petsc(MatDestroySubMatrices(1, &parts));
-  return part;
 }
 
-StructuralMatrices part_of(const System& system, IS chosen) {
-  StructuralMatrices s;
-  s.stiffness = part_of(system.stiffness, chosen);
-  if (system.damping) s.damping = part_of(system.damping, chosen);
+void take_part(const System& system, IS chosen, StructuralMatrices& s) {
+  take_part(system.stiffness, chosen, s.stiffness);
+  if (system.damping) take_part(system.damping, chosen, s.damping);
   if (system.mass) {
-    s.mass = part_of(system.mass, chosen);
+    take_part(system.mass, chosen, s.mass);
   } else {
     s.mass.resize(s.stiffness.rows(), s.stiffness.rows());
     s.mass.setIdentity();
   }
-  return s;
 }
 
 OwnedIS stride(PetscInt first, PetscInt last) {
@@ -135,8 +133,9 @@ DistributedProof::DistributedProof(const System& system, double loss) : system_(
   if (system.size > one_piece) {
     take_own_pieces(loss);
   } else {
-    StructuralMatrices all = part_of(system, all_for_the_first(system));
-    if (rank() == 0) own_.emplace(std::move(all));
+    take_part(system, all_for_the_first(system), around_);
+    if (rank() == 0)
+      own_.emplace(around_.stiffness, around_.mass, around_.has_damping() ? &around_.damping : nullptr);
   }
 }
 
@@ -144,11 +143,11 @@ DistributedProof::DistributedProof(const System& system, double loss) : system_(
 void DistributedProof::take_own_pieces(double loss) {
   const int layers = Pieces::layers_for(loss), group = system_.unknowns_a_node;
   const OwnedIS rows = rows_around(system_, 2 * layers + 1);
-  StructuralMatrices around = part_of(system_, rows);
+  take_part(system_, rows, around_);
   const Graph graph = [&] {
-    if (system_.one_pattern) return graph_of(around.stiffness, group);
-    SparseMatrix pattern = around.stiffness + around.mass;
-    if (around.has_damping()) pattern = SparseMatrix(pattern + around.damping);
+    if (system_.one_pattern) return graph_of(around_.stiffness, group);
+    SparseMatrix pattern = around_.stiffness + around_.mass;
+    if (around_.has_damping()) pattern = SparseMatrix(pattern + around_.damping);
     return graph_of(pattern, group);
   }();
   const OwnRows own(system_.stiffness);
@@ -168,7 +167,7 @@ void DistributedProof::take_own_pieces(double loss) {
   auto pieces = std::make_shared<const Pieces>(graph, part, count, layers);
   pieces_ = pieces->count();
   MPI_Allreduce(MPI_IN_PLACE, &pieces_, 1, MPI_LONG, MPI_SUM, PETSC_COMM_WORLD);
-  own_.emplace(std::move(around), std::move(pieces), all_of);
+  own_.emplace(around_, std::move(pieces), all_of);
 }
 
 bool DistributedProof::holds(double c, double a, double b) {
@@ -184,8 +183,10 @@ std::optional<bool> DistributedProof::stiffness_is_semidefinite() {
 std::optional<bool> is_semidefinite(Mat d, const System& system) {
   if (system.size > DistributedProof::one_piece) return std::nullopt;
   const OwnedIS chosen = all_for_the_first(system);
-  const SparseMatrix all = part_of(d, chosen);
-  const StructuralMatrices s = part_of(system, chosen);
+  SparseMatrix all;
+  StructuralMatrices s;
+  take_part(d, chosen, all);
+  take_part(system, chosen, s);
   return told_by_the_first(rank() == 0 && springstab::is_semidefinite(all, s.mass));
 }
 

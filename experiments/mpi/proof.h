@@ -31,6 +31,7 @@ class DistributedProof {
   void take_own_pieces(double loss);
 
   const System& system_;
+  StructuralMatrices around_;             // of this rank's rows and those that its pieces need besides
   std::optional<DefinitenessProof> own_;  // this rank's
   long pieces_ = 0;
 };

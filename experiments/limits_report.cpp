@@ -157,6 +157,7 @@ std::vector<Method> methods_of(const LimitsOptions& options) {
 std::vector<LimitsRow> rows_of(StructureLimits& answer, const std::vector<Method>& methods,
                                Waiting& waiting) {
   std::vector<LimitsRow> rows;
+  answer.expect(methods);
   for (const Method& method : methods) {
     waiting.now(method.name());
     rows.push_back({method, answer.limits(method)});

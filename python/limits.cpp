@@ -75,6 +75,7 @@ Answer answer(Subject& input, std::vector<Method> methods, const StructureLimits
   Structure structure = input.structure(start);
   if (options.certify) structure.every_pose = input.every_pose();
   Answer a{.limits = StructureLimits(std::move(structure), options)};
+  a.limits.expect(methods);
   for (const Method& method : methods) a.methods.emplace_back(method, a.limits.limits(method));
   if (!a.limits.k0().converged) return a;
   a.growth = a.limits.growth();

@@ -455,6 +455,86 @@ BOOST_AUTO_TEST_CASE(an_estimated_step_is_the_certified_one) {
     }
 }
 
+// The largest a d + b k over the d, k >= 0 that the half-planes leave, from their corners.
+double farthest_corner(std::vector<HalfPlane> sides, double a, double b) {
+  sides.push_back({-1, 0, 0});
+  sides.push_back({0, -1, 0});
+  double most = 0;  // the origin
+  for (const HalfPlane& p : sides)
+    for (const HalfPlane& q : sides) {
+      const double determinant = p.x * q.y - p.y * q.x;
+      const double d = (p.bound * q.y - q.bound * p.y) / determinant;
+      const double k = (q.bound * p.x - p.bound * q.x) / determinant;
+      const auto within = [&](const HalfPlane& side) {
+        const double size = std::abs(side.x * d) + std::abs(side.y * k) + side.bound;
+        return side.x * d + side.y * k <= side.bound + 1e-12 * size;
+      };
+      if (std::isfinite(d) && std::isfinite(k) && std::ranges::all_of(sides, within))
+        most = std::max(most, a * d + b * k);
+    }
+  return most;
+}
+
+BOOST_AUTO_TEST_CASE(what_follows_from_proved_half_planes_is_implied_and_nothing_beyond) {
+  RandomNets random(8);
+  int edges = 0, from_origin = 0;
+  for (int trial = 0; trial < 400; ++trial) BOOST_TEST_CONTEXT(trial) {
+      const double unit_d = random.log_uniform(-6, 6), unit_k = random.log_uniform(-8, 8);
+      std::vector<HalfPlane> sides{{unit_d, 0, 1}, {0, unit_k, 1}};  // W is bounded
+      const int more = static_cast<int>(random.uniform(0, 5));
+      for (int i = 0; i < more; ++i) {
+        const double c = random.uniform(0, 1) < 0.2 ? 0 : random.log_uniform(-2, 0);
+        sides.push_back({random.uniform(-1, 1) * unit_d, random.uniform(0, 1) * unit_k, c});
+      }
+      ProvedHalfPlanes proved;
+      for (const HalfPlane& side : sides) {
+        const double scale = random.log_uniform(-3, 3);
+        proved.add(scale * side.bound, scale * side.x, scale * side.y);
+        const double room = side.bound == 0 && side.x < 0 ? 1 - 1e-9 : 1;  // where no bound has any
+        BOOST_TEST(proved.imply(side.bound * (1 + 1e-9), side.x, room * side.y));
+      }
+      const double a = random.uniform(-1, 1) * unit_d, b = random.uniform(-0.1, 1) * unit_k;
+      const double most = farthest_corner(sides, a, b);
+      if (most > 1e-6) {
+        ++edges;
+        BOOST_TEST(proved.imply(most * (1 + 1e-9), a, b));
+        BOOST_TEST(!proved.imply(most * (1 - 1e-9), a, b));
+      } else if (most == 0) {
+        ++from_origin;
+        BOOST_TEST(proved.imply(1e-9, a, b));
+      }
+      for (const double wrong : {std::nan(""), infinity}) {
+        BOOST_TEST(!proved.imply(1, wrong, b));
+        BOOST_TEST(!proved.imply(1, a, wrong));
+        BOOST_TEST(!proved.imply(wrong, a, b));
+      }
+      BOOST_TEST(!proved.imply(-1e-9, a, b));
+    }
+  BOOST_TEST(edges > 100);
+  BOOST_TEST(from_origin > 20);
+  BOOST_TEST(!ProvedHalfPlanes().imply(1, 1, 1));
+}
+
+BOOST_AUTO_TEST_CASE(what_was_proved_is_not_proved_again) {
+  RandomNets random(21);
+  for (int trial = 0; trial < 10; ++trial) BOOST_TEST_CONTEXT(trial) {
+      const StructuralMatrices s = without_rigid_motions(matrices(random.net(false)));
+      if (!s.has_damping()) continue;
+      DefinitenessProof proof(s);
+      int asked = 0;
+      CertifiedSteps steps(std::make_shared<const NumericalRange>(s), [&](double c, double a, double b) {
+        ++asked;
+        return proof.holds(c, a, b);
+      });
+      const std::optional<double> h = steps.certified("rk4");
+      const int once = asked;
+      BOOST_REQUIRE(h.has_value());
+      BOOST_TEST(steps.certified("rk4").value() >= *h * (1 - 1e-12));
+      BOOST_TEST(asked == once);
+      BOOST_TEST(*h <= dense_truth(s, "rk4"));
+    }
+}
+
 BOOST_AUTO_TEST_CASE(a_step_for_every_pose_is_stable_in_each) {
   RandomNets random(5);
   for (int i = 0; i < 60; ++i) BOOST_TEST_CONTEXT("net " << i) {

@@ -1,7 +1,7 @@
 // Many unknowns: proofs at their edge by blocks and by pieces, and k0 to few digits.
-#include <boost/test/unit_test.hpp>
-
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <boost/test/unit_test.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -11,6 +11,7 @@
 
 #include "analysis/constants.h"
 #include "analysis/proofs/definiteness.h"
+#include "analysis/proofs/sum_of_couplings.h"
 #include "analysis/spectra/lanczos.h"
 #include "analysis/spectra/rigid_motions.h"
 #include "analysis/spectra/spectrum.h"
@@ -149,6 +150,89 @@ BOOST_AUTO_TEST_CASE(motions_that_rounding_alone_resists_are_held_at_any_size) {
     BOOST_TEST(rest.size() == net.rows(), n);
     BOOST_TEST((rest.stiffness - net).norm() == 0);
   }
+}
+
+// The same net with free edges: translations are rigid, which is seen at once.
+BOOST_AUTO_TEST_CASE(free_unknowns_are_held_without_a_search_but_translations_are_noticed) {
+  const int n = 150;
+  const SparseMatrix net = membrane(n);
+  std::vector<Eigen::Triplet<double>> entries, free;
+  for (Eigen::Index j = 0; j < net.cols(); ++j)
+    for (SparseMatrix::InnerIterator it(net, j); it; ++it) {
+      const double own = static_cast<double>(net.col(j).nonZeros() - 1);
+      entries.emplace_back(3 * it.row(), 3 * j, it.value());
+      free.emplace_back(3 * it.row(), 3 * j, it.row() == j ? own : it.value());
+    }
+  SparseMatrix flat(3 * net.rows(), 3 * net.cols()), loose = flat;
+  flat.setFromTriplets(entries.begin(), entries.end());
+  loose.setFromTriplets(free.begin(), free.end());
+  const std::optional<StructuralMatrices> held = without_free_unknowns(prepare(flat));
+  BOOST_REQUIRE(held.has_value());
+  BOOST_TEST(held->size() == net.rows());
+  BOOST_TEST((held->stiffness - net).norm() == 0);
+  BOOST_TEST(!without_free_unknowns(prepare(loose)));
+  BOOST_TEST(!without_free_unknowns(prepare(membrane(10))));  // few unknowns
+}
+
+// Springs along `axis`, each of stiffness k and k·across sideways, in a chain between two walls.
+SparseMatrix chain_in_space(int n, const Eigen::Vector3d& axis, double across) {
+  const Eigen::Matrix3d along = axis.normalized() * axis.normalized().transpose();
+  const Eigen::Matrix3d b = along + across * (Eigen::Matrix3d::Identity() - along);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (int i = 0; i < n; ++i) {
+    a.block<3, 3>(3 * i, 3 * i) = 2 * b;
+    if (i + 1 == n) break;
+    a.block<3, 3>(3 * i, 3 * i + 3) = -b;
+    a.block<3, 3>(3 * i + 3, 3 * i) = -b;
+  }
+  return a.sparseView();
+}
+
+// Its smallest eigenvalue is 4 sin²(π/(2(n+1))) across, and no less than 0 for all n if across >= 0.
+BOOST_AUTO_TEST_CASE(a_sum_of_couplings_is_semidefinite_and_nothing_else_is_called_one) {
+  const Eigen::Vector3d axis(1, 2, -0.7);
+  const auto is_sum = [](SparseMatrix a, double shift) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) a.coeffRef(j, j) += shift * std::abs(a.coeff(j, j));
+    return is_sum_of_couplings(a);
+  };
+  for (const int n : {1, 2, 7, 40}) {
+    for (const double across : {0.0, 1e-6, 0.5, 1.0})
+      BOOST_TEST(is_sum(chain_in_space(n, axis, across), 1e-9));
+    BOOST_TEST(is_sum(chain_in_space(n, Eigen::Vector3d::UnitY(), 0), 1e-9));
+    for (const double across : {-1.0, -1e-3, -1e-8})
+      BOOST_TEST(!is_sum(chain_in_space(n, axis, across), 1e-9));
+    const SparseMatrix a = chain_in_space(n, axis, 1);
+    if (n > 2) BOOST_TEST(!is_sum(a, -1e-9));  // between, nothing is left of the diagonal
+  }
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  int sums = 0, indefinite = 0;
+  for (int trial = 0; trial < 2000; ++trial) {  // of a ring of four, with walls
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(12, 12);
+    const double worst = trial % 2 == 0 ? 0 : 0.1 * normal(random);
+    for (int i = 0; i < 4; ++i) {
+      const int j = (i + 1) % 4;
+      const Eigen::Vector3d u(normal(random), normal(random), normal(random));
+      const Eigen::Matrix3d b = u * u.transpose() + (i == 0 ? worst : 0) * Eigen::Matrix3d::Identity();
+      a.block<3, 3>(3 * i, 3 * i) += b;
+      a.block<3, 3>(3 * j, 3 * j) += b;
+      a.block<3, 3>(3 * i, 3 * j) -= b;
+      a.block<3, 3>(3 * j, 3 * i) -= b;
+    }
+    a.diagonal() *= 1 + 1e-9;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, Eigen::EigenvaluesOnly);
+    const bool is_one = is_sum_of_couplings(a.sparseView());
+    sums += is_one;
+    indefinite += solver.eigenvalues()[0] < -1e-12;
+    if (is_one) BOOST_TEST(solver.eigenvalues()[0] > -1e-13 * solver.eigenvalues()[11]);
+    if (worst >= 0) BOOST_TEST(is_one);
+  }
+  BOOST_TEST(sums >= 1000);
+  BOOST_TEST(indefinite > 100);
+  BOOST_TEST(!is_sum_of_couplings(membrane(4)));  // not three unknowns a particle
+  SparseMatrix wrong = chain_in_space(4, axis, 1);
+  wrong.coeffRef(5, 5) = std::nan("");
+  BOOST_TEST(!is_sum_of_couplings(wrong));
 }
 
 BOOST_AUTO_TEST_CASE(products_of_many_unknowns_are_the_same_bits_with_any_number_of_threads) {

@@ -47,7 +47,9 @@ GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& 
       s_(s),
       size_(s.size()),
       options_(options),
-      certified_(s, options) {}
+      certified_(s, options) {
+  know_bound();
+}
 
 GeneralDamping::GeneralDamping(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof,
                                const StiffestMode& k0, const DampingModel& damping, double safety,
@@ -60,7 +62,15 @@ GeneralDamping::GeneralDamping(std::shared_ptr<const ExtremePoints> range, Defin
       s_(unknown_matrices),
       size_(std::numeric_limits<Eigen::Index>::max()),
       options_(options),
-      certified_(std::move(range), std::move(proof)) {}
+      certified_(std::move(range), std::move(proof)) {
+  know_bound();
+}
+
+// Where K is symmetric a bound on k0 is one for matrices.
+void GeneralDamping::know_bound() {
+  if (proofs_ && s_.symmetric && k0_.converged && k0_.upper_bound > 0 && std::isfinite(k0_.upper_bound))
+    certified_.know(k0_.upper_bound, 0, 1);
+}
 
 // One result serves all methods whose eigenvalues follow from the same region in the same way.
 MethodLimits GeneralDamping::limits(const Method& method) {

@@ -35,6 +35,7 @@ class GeneralDamping {
 
  private:
   const std::optional<std::vector<std::complex<double>>>& own_spectrum();
+  void know_bound();
   MethodLimits compute(const Method& method);
   std::vector<Stiffening> stiffenings() const;  // none, then those of the safety factor
   void set_certified(std::optional<double> h, Proof proof, MethodLimits& limits);

@@ -65,6 +65,14 @@ const MethodLimits& StructureLimits::limits(const Method& method) {
   return known->second;
 }
 
+// An exact condition is sharp where it is proved; of others' edges some follow from it.
+void StructureLimits::expect(std::span<const Method> methods) {
+  if (!options_.certify || !general()) return;
+  for (const Method& method : methods)
+    if (!takes_part(method, structure_->matrices) && stability_region(method).exact_condition())
+      limits(method);
+}
+
 // Alpha is fitted mode by mode, which a part of the damping is not: with such a method it is 0.
 DampingModel StructureLimits::damping_with(const Method& method) const {
   const auto& [matrices, damping, every_pose] = *structure_;

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "analysis/limits/general_damping.h"
@@ -63,6 +64,8 @@ class StructureLimits {
   const StiffestMode& k0();
   /// All unknown where k0 did not converge.
   const MethodLimits& limits(const Method& method);
+  /// Before several methods are asked for: finds limits whose proofs spare others of them theirs.
+  void expect(std::span<const Method> methods);
   /// How fast the motion itself grows, the largest Re μ [1/s]: 0 where none does; nothing where it was not
   /// computed, as of a definite K without damping or with Rayleigh's, or where not all eigenvalues were.
   std::optional<double> growth();

@@ -13,6 +13,7 @@
 
 #include "analysis/proofs/definiteness.h"
 #include "analysis/proofs/inscribed_polygon.h"
+#include "analysis/proofs/proved_half_planes.h"
 #include "analysis/spectra/numerical_range.h"
 
 namespace springstab {
@@ -27,8 +28,11 @@ class CertifiedSteps {
   CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof);
 
   const ExtremePoints& range() const { return *range_; }
-  /// The proofs of the whole structure; made when first asked for.
+  /// The proofs of the whole structure; made when first asked for. What follows from earlier ones is not
+  /// factorized.
   const DefinitenessTest& proof();
+  /// c M - a D - b K is known to be positive semidefinite, as where k0 has a proved bound.
+  void know(double c, double a, double b) { known_->add(c, a, b); }
 
   /// A step proved stable; nothing where there is none in the polygons, as for explicit Euler when D is
   /// singular on motions that K resists, or where eigenvalues did not converge.
@@ -48,10 +52,12 @@ class CertifiedSteps {
   std::optional<double> search(const Method& method, const Stiffening& stiffening, const Holds& holds);
   std::optional<ExtremePoint> farthest(const HalfPlane& edge, double h, const Stiffening& stiffening);
   Restricted& restricted();
+  bool hold_rigid_motions();
 
   const StructuralMatrices* s_ = nullptr;  // where there is more than the next two
   std::shared_ptr<const ExtremePoints> range_;
   DefinitenessTest proof_;
+  std::shared_ptr<ProvedHalfPlanes> known_ = std::make_shared<ProvedHalfPlanes>();
   ArpackOptions options_;
   std::shared_ptr<Restricted> restricted_;
   std::vector<ModePoint> outline_;  // points of W, more where a polygon's edge asked for them

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/constants.h"
+#include "analysis/proofs/sum_of_couplings.h"
 #include "solvers/team.h"
 #ifdef SPRINGSTAB_CHOLMOD
 #include "analysis/proofs/pieces.h"
@@ -152,7 +153,7 @@ bool DefinitenessProof::stiffness_is_semidefinite() {
     form_whole({0, 0, -1}, Eigen::VectorXd::Zero(diagonal.size()));
     const double largest = matrix_.nonZeros() > 0 ? matrix_.coeffs().abs().maxCoeff() : 0;
     matrix_.diagonal() += (1e-9 * diagonal.array().abs() + 1e-13 * largest).matrix();
-    stiffness_is_semidefinite_ = largest == 0 || cholesky_.factorize(matrix_);
+    stiffness_is_semidefinite_ = largest == 0 || is_sum_of_couplings(matrix_) || cholesky_.factorize(matrix_);
   }
   return *stiffness_is_semidefinite_;
 }

@@ -14,6 +14,24 @@ constexpr double rounding = 1e-12, global_rounding = 1e-14;
 constexpr double sound =
     1e8;  // times the rounding of x_k alone: not rounding, however far the motion reaches
 
+/// What resists in a structure, and which unknowns are not held.
+struct Resisted {
+  SparseMatrix sum;             // K + D, each of unit size
+  Eigen::VectorXd least_pivot;  // rounding's
+  std::vector<int> place;       // among those that move, which keep their order, or -1
+  int size = 0;
+
+  explicit Resisted(const StructuralMatrices& s);
+
+  template <class Moves>
+  void keep(const Moves& moves) {
+    place.assign(sum.rows(), -1);
+    size = 0;
+    for (Eigen::Index i = 0; i < sum.rows(); ++i)
+      if (moves(i)) place[i] = size++;
+  }
+};
+
 // a / its largest diagonal entry, both per unit of mass.
 SparseMatrix normalized(const SparseMatrix& a, const Eigen::VectorXd& mass) {
   const double largest = Eigen::VectorXd(a.diagonal()).cwiseQuotient(mass).maxCoeff();
@@ -21,14 +39,26 @@ SparseMatrix normalized(const SparseMatrix& a, const Eigen::VectorXd& mass) {
 }
 
 SparseMatrix rows_and_columns(const SparseMatrix& a, const std::vector<int>& place, Eigen::Index size) {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index j = 0; j < a.outerSize(); ++j)
-    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
-      if (place[it.row()] >= 0 && place[it.col()] >= 0)
-        entries.emplace_back(place[it.row()], place[it.col()], it.value());
   SparseMatrix part(size, size);
-  part.setFromTriplets(entries.begin(), entries.end());
+  part.reserve(a.nonZeros());
+  for (Eigen::Index j = 0; j < a.outerSize(); ++j) {
+    if (place[j] < 0) continue;
+    part.startVec(place[j]);
+    for (SparseMatrix::InnerIterator it(a, j); it; ++it)
+      if (place[it.row()] >= 0) part.insertBack(place[it.row()], place[j]) = it.value();
+  }
+  part.finalize();
   return part;
+}
+
+// A pivot is at most the diagonal's entry: what is rounding there, as sideways in a flat net, is held.
+Resisted::Resisted(const StructuralMatrices& s) {
+  const Eigen::VectorXd mass = s.mass.diagonal();
+  sum = normalized(s.stiffness, mass);
+  if (s.has_damping()) sum = SparseMatrix(sum + normalized(s.damping, mass));
+  const Eigen::VectorXd diagonal = sum.diagonal();
+  least_pivot = rounding * diagonal + global_rounding * mass;
+  keep([&](Eigen::Index i) { return diagonal[i] > least_pivot[i]; });
 }
 
 // LDLᵀ of a semidefinite matrix, a row of L at a time along the elimination tree (Davis 2005, Algorithm 849),
@@ -118,34 +148,35 @@ bool is_above(SparseMatrix a, const Eigen::VectorXd& least_pivot, const std::vec
   return SparseCholesky().factorize(a);
 }
 
-}  // namespace
-
-StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
-  const Eigen::VectorXd mass = s.mass.diagonal();
-  SparseMatrix sum = normalized(s.stiffness, mass);
-  if (s.has_damping()) sum = SparseMatrix(sum + normalized(s.damping, mass));
-  const Eigen::VectorXd least_pivot = rounding * sum.diagonal() + global_rounding * mass;
-  std::vector<int> place;
-  int size = 0;
-  const auto keep = [&](const auto& moves) {
-    place.assign(s.size(), -1);
-    size = 0;
-    for (Eigen::Index i = 0; i < s.size(); ++i)
-      if (moves(i)) place[i] = size++;
-  };
-  // A pivot is at most the diagonal's entry: what is rounding there, as sideways in a flat net, is held.
-  const Eigen::VectorXd diagonal = sum.diagonal();
-  keep([&](Eigen::Index i) { return diagonal[i] > least_pivot[i]; });
-  if (!is_above(rows_and_columns(sum, place, size), least_pivot, place)) {
-    const std::vector<bool> moving = Pivots(sum, least_pivot).moving();
-    keep([&](Eigen::Index i) { return moving[i]; });
-  }
-
+StructuralMatrices part_of(const StructuralMatrices& s, const std::vector<int>& place, int size) {
   StructuralMatrices rest;
   rest.stiffness = rows_and_columns(s.stiffness, place, size);
   rest.mass = rows_and_columns(s.mass, place, size);
   if (s.has_damping()) rest.damping = rows_and_columns(s.damping, place, size);
   return rest;
+}
+
+}  // namespace
+
+StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
+  Resisted r(s);
+  if (!is_above(rows_and_columns(r.sum, r.place, r.size), r.least_pivot, r.place)) {
+    const std::vector<bool> moving = Pivots(r.sum, r.least_pivot).moving();
+    r.keep([&](Eigen::Index i) { return moving[i]; });
+  }
+  return part_of(s, r.place, r.size);
+}
+
+std::optional<StructuralMatrices> without_free_unknowns(const StructuralMatrices& s) {
+  if (s.size() < SparseCholesky::blocked_from) return std::nullopt;
+  const Resisted r(s);
+  for (const int unknowns : {1, 3})  // a particle
+    for (int axis = 0; axis < unknowns; ++axis) {
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(s.size());
+      for (Eigen::Index i = axis; i < s.size(); i += unknowns) x[i] = r.place[i] < 0 ? 0 : 1;
+      if (x.any() && x.dot(r.sum * x) <= x.dot(r.least_pivot)) return std::nullopt;
+    }
+  return part_of(s, r.place, r.size);
 }
 
 }  // namespace springstab

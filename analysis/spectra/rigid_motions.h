@@ -1,6 +1,8 @@
 // Motions that neither K nor D resists: rigid ones, and the mechanisms of flat cloth.
 #pragma once
 
+#include <optional>
+
 #include "solvers/linear/structural_matrices.h"
 
 namespace springstab {
@@ -11,5 +13,10 @@ namespace springstab {
 /// A motion counts where xᵀ(K + D)x, each of unit size, is of rounding's size: 1e-12 of what each unknown has
 /// alone, or 1e-14 of the stiffest. K and D must be positive semidefinite.
 StructuralMatrices without_rigid_motions(const StructuralMatrices& s);
+
+/// The same where no more is held than unknowns that nothing resists by themselves, as sideways in a flat
+/// net, and nobody has looked for other motions, which costs a factorization. Nothing where translations are
+/// seen to be among those, or there are so few unknowns that looking costs little.
+std::optional<StructuralMatrices> without_free_unknowns(const StructuralMatrices& s);
 
 }  // namespace springstab

@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "analysis/blas.h"
 #include "analysis/constants.h"
 #include "analysis/proofs/definiteness.h"
 #include "analysis/proofs/sum_of_couplings.h"
@@ -21,6 +22,10 @@
 #include "tests/instruments.h"
 #ifdef SPRINGSTAB_CHOLMOD
 #include "analysis/proofs/pieces.h"
+#endif
+
+#ifdef SPRINGSTAB_CHOLMOD
+extern "C" char* openblas_get_corename();
 #endif
 
 BOOST_AUTO_TEST_SUITE(scale)
@@ -87,6 +92,27 @@ BOOST_AUTO_TEST_CASE(a_proof_holds_down_to_its_resolution_and_never_below_the_tr
           BOOST_TEST(!proof.holds(sigma, 0, 1));
       }
     }
+}
+
+// A proof is one with any of OpenBLAS's kernels; none for older processors are left to this one.
+BOOST_AUTO_TEST_CASE(proofs_hold_with_the_kernels_of_this_processor) {
+  const int n = around_the_crossover().back();
+  const double k0 = membrane_k0(n);
+  const auto least_proved = [&] {
+    DefinitenessProof proof(prepare(membrane(n)));
+    double above = 1;
+    while (proof.holds(k0 * (1 + above / 2), 0, 1)) above /= 2;
+    return above;
+  };
+  const double before = least_proved();
+  use_fast_blas_kernels();
+#if defined(SPRINGSTAB_CHOLMOD) && defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && !std::getenv("OPENBLAS_CORETYPE"))
+    BOOST_TEST(openblas_get_corename() != std::string("Prescott"));
+#endif
+  BOOST_TEST(least_proved() == before);
+  BOOST_TEST(before < 1e-7);
+  BOOST_TEST(before > eps);
 }
 
 // Its smallest eigenvalue is what stiffness has left: -1e-13 of the largest is not positive.

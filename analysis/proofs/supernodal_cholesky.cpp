@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/blas_threads.h"
+#include "analysis/blas.h"
 #include "analysis/proofs/graph_parts.h"
 
 namespace springstab {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "analysis/blas_threads.h"
+#include "analysis/blas.h"
 
 namespace springstab {
 namespace {

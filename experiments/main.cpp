@@ -5,7 +5,6 @@
 #include <cstring>
 #include <iostream>
 
-#include "analysis/blas.h"
 #include "experiments/command/command_line.h"
 #include "experiments/command/options.h"
 
@@ -15,7 +14,6 @@ int main(int argc, char** argv) {
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 #endif
-  springstab::use_fast_blas_kernels();
   const int status = springstab::run_command(argc, argv);
   errno = 0;
   std::cout.flush();

@@ -8,7 +8,6 @@
 #include <iostream>
 #include <vector>
 
-#include "analysis/blas.h"
 #include "experiments/command/command_line.h"
 #include "experiments/command/options.h"
 #include "experiments/mpi/agreement.h"
@@ -63,7 +62,6 @@ void give_memory_back() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  springstab::use_fast_blas_kernels();
   Words words(argc, argv);
   int count = static_cast<int>(words.petscs.size());
   words.petscs.push_back(nullptr);

@@ -86,11 +86,10 @@ void BlockSsor::set_pattern(const BlockSparseMatrix& stiffness, const BlockSpars
 void BlockSsor::divide() {
   const long n = rows(), all = row_start_.back();
   rows_of_ = {IndexRange{0, 0}, {n, n}, {0, n}};
-  std::vector<int> reach(static_cast<std::size_t>(n) + 1,
-                         static_cast<int>(n));  // of this row and those below
+  std::vector<long> reach(static_cast<std::size_t>(n) + 1,
+                          n);  // the first column of a row and those below it
   for (long i = n - 1; i >= 0; --i)
-    reach[i] = std::min(row_start_[i] < row_start_[i + 1] ? column_[row_start_[i]] : static_cast<int>(i),
-                        reach[i + 1]);
+    reach[i] = std::min(reach[i + 1], row_start_[i] < row_start_[i + 1] ? column_[row_start_[i]] : i);
   long lower = 0;
   for (long upper = 1; upper < n && row_start_[upper] <= all - row_start_[lower]; ++upper) {
     while (lower < n && reach[lower] < upper) ++lower;

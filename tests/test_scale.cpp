@@ -233,7 +233,8 @@ BOOST_AUTO_TEST_CASE(a_sum_of_couplings_is_semidefinite_and_nothing_else_is_call
       a.block<3, 3>(3 * j, 3 * i) -= b;
     }
     a.diagonal() *= 1 + 1e-9;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, Eigen::EigenvaluesOnly);
+    using Exact = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+    const Eigen::SelfAdjointEigenSolver<Exact> solver(a.cast<long double>(), Eigen::EigenvaluesOnly);
     const bool is_one = is_sum_of_couplings(a.sparseView());
     sums += is_one;
     indefinite += solver.eigenvalues()[0] < -1e-12;

@@ -172,7 +172,7 @@ void GeneralDamping::add_split(const Method& method, MethodLimits& limits) {
     if (!h) return;
     if (!limits.h_max) {
       limits.h_max = *h;
-      DefinitenessProof proof(s.stiffness, s.mass, s.has_damping() ? &s.damping : nullptr);
+      DefinitenessProof proof(&s);
       if (proofs_) set_certified(proved_limit(proof.test(), condition, *h), Proof::matrix_condition, limits);
     }
     least = std::min(least, *h);

@@ -80,7 +80,7 @@ std::optional<double> proved_limit(const StructuralMatrices& s, const HalfPlane&
   options.tolerance = std::max(options.tolerance, 1e-6);  // only guides the proof
   const std::optional<double> h = exact_limit(NumericalRange(s, options), condition);
   if (!h) return std::nullopt;
-  DefinitenessProof proof(s.stiffness, s.mass, s.has_damping() ? &s.damping : nullptr);
+  DefinitenessProof proof(&s);
   return proved_limit(proof.test(), condition, *h, gap);
 }
 

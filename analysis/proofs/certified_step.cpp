@@ -37,7 +37,7 @@ struct CertifiedSteps::Restricted {
 
   Restricted(StructuralMatrices matrices, const ArpackOptions& options,
              const std::shared_ptr<ProvedHalfPlanes>& known)
-      : s(std::move(matrices)), range(s, options), proof(s), test(remembering(proof.test(), known)) {}
+      : s(std::move(matrices)), range(s, options), proof(&s), test(remembering(proof.test(), known)) {}
 };
 
 CertifiedSteps::CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options)
@@ -50,7 +50,7 @@ CertifiedSteps::CertifiedSteps(std::shared_ptr<const ExtremePoints> range, Defin
 
 const DefinitenessTest& CertifiedSteps::proof() {
   if (!proof_) {
-    const auto proof = std::make_shared<DefinitenessProof>(*s_);
+    const auto proof = std::make_shared<DefinitenessProof>(s_);
     proof_ = remembering([proof](double c, double a, double b) { return proof->holds(c, a, b); }, known_);
   }
   return proof_;

@@ -47,7 +47,7 @@ DefinitenessProof::DefinitenessProof(const SparseMatrix& stiffness, const Sparse
 
 DefinitenessProof::DefinitenessProof(const StructuralMatrices& s, std::shared_ptr<const Pieces> own,
                                      std::function<bool(bool)> all_of)
-    : DefinitenessProof(s.stiffness, s.mass, s.has_damping() ? &s.damping : nullptr) {
+    : DefinitenessProof(&s) {
   pieces_ = std::move(own);
   all_of_ = std::move(all_of);
 }

@@ -27,6 +27,9 @@ class DefinitenessProof {
   /// Of matrices that must outlive it.
   DefinitenessProof(const SparseMatrix& stiffness, const SparseMatrix& mass,
                     const SparseMatrix* damping = nullptr, double loss = usual_loss);
+  /// The same of a structure's, which are not copied.
+  explicit DefinitenessProof(const StructuralMatrices* s)
+      : DefinitenessProof(s->stiffness, s->mass, s->has_damping() ? &s->damping : nullptr) {}
 
   /// Of a structure whose matrices are distributed: `s`, which must outlive it, are rows and columns of it,
   /// those that `own` pieces and their neighbours need (Pieces), and `all_of` says whether something is true

@@ -134,8 +134,7 @@ DistributedProof::DistributedProof(const System& system, double loss) : system_(
     take_own_pieces(loss);
   } else {
     take_part(system, all_for_the_first(system), around_);
-    if (rank() == 0)
-      own_.emplace(around_.stiffness, around_.mass, around_.has_damping() ? &around_.damping : nullptr);
+    if (rank() == 0) own_.emplace(&around_);
   }
 }
 

@@ -12,4 +12,10 @@ namespace springstab {
 /// the number of cores.
 void use_one_blas_thread();
 
+/// For a program that calls BLAS from its own threads alone, before anything else: ends the threads that
+/// OpenBLAS starts when it is loaded, which look for work for some 100 ms. Each asks for 128 MB of address
+/// space until it has them; where that is limited it may never have, nor end: the program begins anew, with
+/// OPENBLAS_NUM_THREADS=1.
+void end_blas_threads(char** argv);
+
 }  // namespace springstab

@@ -5,10 +5,12 @@
 #include <cstring>
 #include <iostream>
 
+#include "analysis/blas.h"
 #include "experiments/command/command_line.h"
 #include "experiments/command/options.h"
 
 int main(int argc, char** argv) {
+  springstab::end_blas_threads(argv);
 #ifdef M_MMAP_MAX
   // Large matrices come and go: a fifth of a proof's time went into fresh pages.
   mallopt(M_MMAP_MAX, 0);

@@ -111,6 +111,16 @@ BOOST_AUTO_TEST_CASE(what_is_no_text_is_refused_at_once_and_in_little_memory) {
   if (geteuid() != 0) check_refused((*this)("limits secret.obj"), "secret.obj: cannot be opened (Permission");
 }
 
+// A BLAS may start threads that wait for memory without end.
+BOOST_AUTO_TEST_CASE(a_limit_of_address_space_does_not_keep_a_command_from_ending) {
+  if (!limits_memory) return;
+  file("k.mtx", matrix);
+  const std::string line = "timeout 30 \"$springstab\" limits --stiffness k.mtx --json";
+  const Outcome plain = shell(line), limited = shell("ulimit -v 200000; " + line);
+  BOOST_TEST(limited.status == 0);
+  BOOST_TEST(without_cheapest(limited.out) == without_cheapest(plain.out));
+}
+
 BOOST_AUTO_TEST_CASE(what_comes_through_a_pipe_is_read_to_its_end) {
   file("k.mtx", matrix);
   const std::string plain = (*this)("limits --stiffness k.mtx --json").out;

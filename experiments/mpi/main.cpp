@@ -8,6 +8,7 @@
 #include <iostream>
 #include <vector>
 
+#include "analysis/blas.h"
 #include "experiments/command/command_line.h"
 #include "experiments/command/options.h"
 #include "experiments/mpi/agreement.h"
@@ -62,6 +63,7 @@ void give_memory_back() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  springstab::end_blas_threads(argv);
   Words words(argc, argv);
   int count = static_cast<int>(words.petscs.size());
   words.petscs.push_back(nullptr);

@@ -62,6 +62,64 @@ struct Triangle {
   }
 };
 
+using FactorRows = Eigen::Matrix<double, 3, 4, Eigen::RowMajor>;  // of C⁻ᵀ, the last column zero
+
+// H = m M + k K + c C.
+struct Combination {
+  double m;
+  const std::vector<double>& mass;
+  double k;
+  const BlockSparseMatrix& stiffness;
+  double c;
+  const BlockSparseMatrix* damping;
+
+  Block3 diagonal(int i) const {
+    Block3 sum = k * Eigen::Map<const Block3>(stiffness.block(stiffness.diagonal(i)));
+    if (damping) sum += c * Eigen::Map<const Block3>(damping->block(damping->diagonal(i)));
+    sum.diagonal().array() += m * mass[i];
+    return sum;
+  }
+};
+
+// The blocks of a row of H below the diagonal, asked for by ascending columns.
+class BelowDiagonal {
+ public:
+  BelowDiagonal(const Combination& h, int i)
+      : h_(h),
+        in_stiffness_(h.stiffness.row_begin(i)),
+        in_damping_(h.damping ? h.damping->row_begin(i) : 0) {}
+
+  Rows at(int column) {
+    Rows sum;
+    if (h_.stiffness.column(in_stiffness_) == column) sum.add(h_.k, h_.stiffness.block(in_stiffness_++));
+    if (h_.damping && h_.damping->column(in_damping_) == column)
+      sum.add(h_.c, h_.damping->block(in_damping_++));
+    return sum;
+  }
+
+ private:
+  const Combination& h_;
+  long in_stiffness_, in_damping_;
+};
+
+// Of the diagonal block; false where it is not positive definite.
+bool invert_factor(const Block3& diagonal, double* factor) {
+  const Eigen::LLT<Block3> cholesky(diagonal / BlockSsor::relaxation);
+  const Block3 inverse = cholesky.matrixL().solve(Block3::Identity());
+  Eigen::Map<FactorRows>{factor} << inverse.transpose(), Eigen::Vector3d::Zero();
+  return cholesky.info() == Eigen::Success;
+}
+
+// out = own⁻¹ h other⁻ᵀ.
+void scale_block(const FactorRows& own, const Rows& h, const double* other, double* out) {
+  for (int r = 0; r < 3; ++r) {
+    const Four half = h.r0 * own(0, r) + h.r1 * own(1, r) + h.r2 * own(2, r);
+    const Four row =
+        ConstFourAt(other) * half[0] + ConstFourAt(other + 4) * half[1] + ConstFourAt(other + 8) * half[2];
+    Eigen::Map<Eigen::Array3d>{out + 3 * r} = row.head<3>();
+  }
+}
+
 }  // namespace
 
 void BlockSsor::set_pattern(const BlockSparseMatrix& stiffness, const BlockSparseMatrix* damping) {
@@ -106,35 +164,16 @@ bool BlockSsor::worth_two_threads() const {
 bool BlockSsor::set(double m, const std::vector<double>& mass, double k, const BlockSparseMatrix& stiffness,
                     double c, const BlockSparseMatrix* damping) {
   if (row_start_.empty()) set_pattern(stiffness, damping);
-  const auto factorize = [&](long row) {
-    const int i = static_cast<int>(row);
-    Block3 diagonal = k * Eigen::Map<const Block3>(stiffness.block(stiffness.diagonal(i)));
-    if (damping) diagonal += c * Eigen::Map<const Block3>(damping->block(damping->diagonal(i)));
-    diagonal.diagonal().array() += m * mass[i];
-    const Eigen::LLT<Block3> cholesky(diagonal / relaxation);
-    const Block3 inverse = cholesky.matrixL().solve(Block3::Identity());
-    Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(&factor_[12 * row]) << inverse.transpose(),
-        Eigen::Vector3d::Zero();
-    return cholesky.info() == Eigen::Success;
+  const Combination h{m, mass, k, stiffness, c, damping};
+  const auto factorize = [&](long i) {
+    return invert_factor(h.diagonal(static_cast<int>(i)), &factor_[12 * i]);
   };
-  // L̂_ij = C_i⁻¹ H_ij C_j⁻ᵀ, row by row.
-  const auto scale = [&](long row) {
-    const int i = static_cast<int>(row);
-    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> own(&factor_[12 * row]);
-    double* out = &value_[9 * row_start_[row]];
-    long in_stiffness = stiffness.row_begin(i), in_damping = damping ? damping->row_begin(i) : 0;
-    for (long place = row_start_[row]; place < row_start_[row + 1]; ++place, out += 9) {
+  const auto scale = [&](long i) {  // L̂_ij = C_i⁻¹ H_ij C_j⁻ᵀ
+    const FactorRows own(&factor_[12 * i]);
+    BelowDiagonal row(h, static_cast<int>(i));
+    for (long place = row_start_[i]; place < row_start_[i + 1]; ++place) {
       const int j = column_[place];
-      Rows h;
-      if (stiffness.column(in_stiffness) == j) h.add(k, stiffness.block(in_stiffness++));
-      if (damping && damping->column(in_damping) == j) h.add(c, damping->block(in_damping++));
-      const double* other = &factor_[12 * static_cast<long>(j)];
-      for (int r = 0; r < 3; ++r) {
-        const Four half = h.r0 * own(0, r) + h.r1 * own(1, r) + h.r2 * own(2, r);
-        const Four row_r = ConstFourAt(other) * half[0] + ConstFourAt(other + 4) * half[1] +
-                           ConstFourAt(other + 8) * half[2];
-        Eigen::Map<Eigen::Array3d>{out + 3 * r} = row_r.head<3>();
-      }
+      scale_block(own, row.at(j), &factor_[12 * static_cast<long>(j)], &value_[9 * place]);
     }
   };
   bool usable[2] = {true, true};

@@ -120,6 +120,21 @@ BOOST_AUTO_TEST_CASE(ranks_say_what_the_plain_command_says) {
   }
 }
 
+// Where every spring has a damper, also by those methods whose regions touch the origin at an angle.
+BOOST_AUTO_TEST_CASE(dampers_certify_every_method) {
+  here.file("net.json", R"({"geometry": {"grid": [9, 8], "spacing": 0.1}, "pins": "first-row", "material":
+    {"name": "default", "damping": {"structural": 0.02, "shear": 0.01, "bending": 0.004}}})");
+  const Json plain = here("limits net.json --json").json();
+  for (const int ranks : {1, 2}) {
+    const Json report = on(ranks, "limits net.json --json").json();
+    for (const char* name : {"explicit-euler", "rk2", "rk4", "symplectic-euler"}) BOOST_TEST_CONTEXT(name) {
+        const double certified = method(report, name)["h_certified"];
+        BOOST_TEST(certified <= method(plain, name)["h_max"].get<double>());
+        BOOST_TEST(certified >= 0.9 * method(plain, name)["h_max"].get<double>());
+      }
+  }
+}
+
 // The exact limit where D' and K' do not commute, and a proof of it that is as sharp.
 BOOST_AUTO_TEST_CASE(general_damping_has_its_exact_limit_and_polygons) {
   systems();

@@ -250,6 +250,68 @@ BOOST_AUTO_TEST_CASE(a_sum_of_couplings_is_semidefinite_and_nothing_else_is_call
   BOOST_TEST(!is_sum_of_couplings(wrong));
 }
 
+// Ten particles in a plane, springs between all neighbours and to a wall at each end.
+struct Ladder {
+  StructuralMatrices s;
+  double least = infinity;  // damper / stiffness
+
+  Ladder(std::mt19937_64& random, const std::vector<double>& dampers, double noise) {
+    constexpr int count = 10;
+    std::uniform_real_distribution<double> angle(0, std::numbers::pi), stiffness(1, 100);
+    Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * count, 3 * count), d = k;
+    std::size_t spring = 0;
+    const auto couple = [&](int i, int j) {
+      const double at = angle(random), ki = stiffness(random), di = dampers[spring++ % dampers.size()] * ki;
+      const Eigen::Vector3d u(std::cos(at), 0, std::sin(at));
+      Eigen::Matrix3d b = u * u.transpose();
+      for (auto& [a, factor] : {std::pair{&k, ki}, {&d, di}}) {
+        if (i >= 0) a->block<3, 3>(3 * i, 3 * i) += factor * b;
+        a->block<3, 3>(3 * j, 3 * j) += factor * b;
+        if (i >= 0) a->block<3, 3>(3 * i, 3 * j) -= factor * b;
+        if (i >= 0) a->block<3, 3>(3 * j, 3 * i) -= factor * b;
+      }
+      least = std::min(least, di / ki);
+    };
+    couple(-1, 0);
+    couple(-1, count - 1);
+    for (const int reach : {1, 2})
+      for (int i = 0; i + reach < count; ++i) couple(i, i + reach);
+    for (int i = 0; i < count; ++i) k(3 * i + 1, 3 * i + 1) = (i % 2 == 0 ? 1 : -1) * noise;
+    s = prepare(k.sparseView(0, 0), {}, d.sparseView(0, 0));
+  }
+
+  std::optional<double> ratio() const { return coupling_ratio(s, {0, s.size()}); }
+};
+
+BOOST_AUTO_TEST_CASE(no_coupling_has_a_damper_weaker_than_the_coupling_ratio) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> damper(0.01, 1);
+  for (int trial = 0; trial < 200; ++trial) BOOST_TEST_CONTEXT(trial) {
+      std::vector<double> dampers(trial % 20 + 1);
+      for (double& c : dampers) c = damper(random);
+      const Ladder ladder(random, dampers, trial % 2 == 0 ? 0 : 1e-14);
+      const double ratio = ladder.ratio().value();
+      BOOST_TEST(ratio == ladder.least, boost::test_tools::tolerance(1e-8));
+      BOOST_TEST(ratio < ladder.least * (1 + 1e-10));
+      using Exact = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+      const Exact d = Eigen::MatrixXd(ladder.s.damping).cast<long double>(),
+                  rest = d - ratio * Eigen::MatrixXd(ladder.s.stiffness).cast<long double>();
+      const Eigen::SelfAdjointEigenSolver<Exact> solver(rest, Eigen::EigenvaluesOnly);
+      BOOST_TEST(solver.eigenvalues()[0] > -2e-11 * d.diagonal().maxCoeff());
+      std::optional<double> least = infinity;
+      for (const IndexRange part : {IndexRange{0, 6}, {6, 24}, {24, 24}, {24, 30}})
+        least = std::min(*least, coupling_ratio(ladder.s, part).value());
+      BOOST_TEST(*least == ratio, boost::test_tools::tolerance(1e-8));
+    }
+  BOOST_TEST(Ladder(random, {1, 1, 0}, 0).ratio().value() == 0);
+  BOOST_TEST(!Ladder(random, {1, -1e-6}, 0).ratio());
+  Ladder free(random, {1}, 0);
+  free.s.stiffness.setZero();
+  BOOST_TEST(std::isinf(free.ratio().value()));
+  free.s.damping = SparseMatrix();
+  BOOST_TEST(!free.ratio());
+}
+
 BOOST_AUTO_TEST_CASE(products_of_many_unknowns_are_the_same_bits_with_any_number_of_threads) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;

@@ -52,8 +52,8 @@ GeneralDamping::GeneralDamping(const StructuralMatrices& s, const StiffestMode& 
 }
 
 GeneralDamping::GeneralDamping(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof,
-                               const StiffestMode& k0, const DampingModel& damping, double safety,
-                               const ArpackOptions& options)
+                               double coupling_ratio, const StiffestMode& k0, const DampingModel& damping,
+                               double safety, const ArpackOptions& options)
     : k0_(k0),
       damping_(damping),
       safety_(safety),
@@ -62,7 +62,7 @@ GeneralDamping::GeneralDamping(std::shared_ptr<const ExtremePoints> range, Defin
       s_(unknown_matrices),
       size_(std::numeric_limits<Eigen::Index>::max()),
       options_(options),
-      certified_(std::move(range), std::move(proof)) {
+      certified_(std::move(range), std::move(proof), coupling_ratio) {
   know_bound();
 }
 

@@ -20,8 +20,9 @@ class GeneralDamping {
   GeneralDamping(const StructuralMatrices& s, const StiffestMode& k0, const DampingModel& damping,
                  double safety, bool proofs, const ArpackOptions& options = {});
   /// Of a structure that only these know (CertifiedSteps): no eigenvalues of its motion, no Lyapunov proofs.
-  GeneralDamping(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof, const StiffestMode& k0,
-                 const DampingModel& damping, double safety, const ArpackOptions& options);
+  GeneralDamping(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof, double coupling_ratio,
+                 const StiffestMode& k0, const DampingModel& damping, double safety,
+                 const ArpackOptions& options);
   GeneralDamping(StructuralMatrices&&, const StiffestMode&, const DampingModel&, double, bool,
                  const ArpackOptions& = {}) = delete;
 

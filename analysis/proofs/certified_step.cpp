@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/proofs/sum_of_couplings.h"
 #include "analysis/spectra/rigid_motions.h"
 
 namespace springstab {
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double loose = 1e-3;                          // of eigenvectors that only guide the search
 constexpr double first_margin = 1e-4, unlikely = 1e-3;  // of steps below those of the known points
+constexpr double nearly = 2e-3;                         // of a step that may be lost to a cheaper proof
 constexpr double negligible = 1e-9;                     // h√k0 that damping of rounding's size allows
 
 // `proof`, but for what follows from what was proved.
@@ -22,6 +24,13 @@ DefinitenessTest remembering(DefinitenessTest proof, std::shared_ptr<ProvedHalfP
     if (holds) known->add(c, a, b);
     return holds;
   };
+}
+
+// Null where there is none.
+const HalfPlane* edge_through_origin(const PolygonFit& fit) {
+  const auto edge =
+      std::find_if(fit.edges.begin(), fit.edges.end(), [](const HalfPlane& side) { return side.bound == 0; });
+  return edge == fit.edges.end() ? nullptr : &*edge;
 }
 
 }  // namespace
@@ -43,9 +52,11 @@ struct CertifiedSteps::Restricted {
 CertifiedSteps::CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options)
     : s_(&s), range_(std::make_shared<const NumericalRange>(s, options)), options_(options) {}
 
-CertifiedSteps::CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof)
-    : range_(std::move(range)) {
+CertifiedSteps::CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof,
+                               double coupling_ratio)
+    : range_(std::move(range)), coupling_ratio_(coupling_ratio) {
   proof_ = remembering(std::move(proof), known_);
+  know(0, -1, coupling_ratio);
 }
 
 const DefinitenessTest& CertifiedSteps::proof() {
@@ -97,6 +108,43 @@ std::optional<ExtremePoint> CertifiedSteps::farthest(const HalfPlane& edge, doub
   return range.farthest(a, a * stiffening.added_damping + b * stiffening.factor, loose);
 }
 
+// ρ with D - ρ K positive semidefinite by its couplings; 0 where none is known.
+double CertifiedSteps::coupling_ratio() {
+  if (!coupling_ratio_) {
+    const std::optional<double> ratio = springstab::coupling_ratio(*s_, {0, s_->size()});
+    coupling_ratio_ = ratio && std::isfinite(*ratio) ? *ratio : 0;
+    know(0, -1, *coupling_ratio_);
+  }
+  return *coupling_ratio_;
+}
+
+// The polygon that is best for these modes. Of many unknowns an edge through the origin holds without a
+// factorization where it asks for no more than the coupling ratio, whose direction is then one more mode:
+// that polygon is taken where it is nearly as good, or there is no factorization. No edges where no polygon
+// can be proved.
+PolygonFit CertifiedSteps::fit(const Method& method, const Stiffening& stiffening,
+                               std::vector<ModePoint>& modes) {
+  const InscribedPolygons& polygons = inscribed_polygons(method);
+  PolygonFit best = polygons.fit(modes);
+  const HalfPlane* const edge = edge_through_origin(best);
+  if (!edge || (s_ && s_->size() < many_unknowns)) return best;
+  const bool factorized = s_ && s_->size() <= SparseCholesky::unknowns_limit;
+  if (const double ratio = coupling_ratio(); ratio > 0) {
+    if (factorized && !restricted_)  // how far W reaches that way
+      if (const auto p = farthest(*edge, best.h, stiffening)) {
+        outline_.push_back(*p);
+        modes.push_back(stiffening(*p));
+        best = polygons.fit(modes);
+      }
+    std::vector<ModePoint> more = modes;
+    const double k = negligible * outline_.front().k;
+    more.push_back(stiffening({ratio * k, k}));
+    PolygonFit sure = polygons.fit(more);
+    if (!factorized || sure.h >= (1 - nearly) * best.h) return sure;
+  }
+  return factorized ? best : PolygonFit{};
+}
+
 // The polygon that is best for the known points of W, then an edge that does not hold for all of W, whose
 // farthest point becomes known; until all edges hold.
 template <class Holds>
@@ -108,11 +156,8 @@ std::optional<double> CertifiedSteps::search(const Method& method, const Stiffen
   const double shortest = modes.front().k > 0 ? negligible / std::sqrt(modes.front().k) : 0;
   double margin = first_margin;
   for (int round = 0; round < 60 && margin < 0.5; ++round) {
-    PolygonFit fit = inscribed_polygons(method).fit(modes);
+    PolygonFit fit = this->fit(method, stiffening, modes);
     if (!(fit.h > shortest) || fit.edges.empty() || !std::isfinite(fit.h)) return std::nullopt;
-    const bool from_origin = std::any_of(fit.edges.begin(), fit.edges.end(),
-                                         [](const HalfPlane& edge) { return edge.bound == 0; });
-    if (from_origin && (!s_ || s_->size() > SparseCholesky::unknowns_limit)) return std::nullopt;
     const double h = fit.h * (1 - margin);
     const auto room = [&](const HalfPlane& edge) {
       double least = std::numeric_limits<double>::infinity();
@@ -142,7 +187,8 @@ std::optional<double> CertifiedSteps::search(const Method& method, const Stiffen
 std::optional<double> CertifiedSteps::certified(const Method& method) {
   return search(method, {}, [&](const HalfPlane& edge, double h) {
     const double c = edge.bound, a = edge.x * h, b = edge.y * h * h;
-    return c == 0 ? restricted().test(c, a, b) : proof()(c, a, b);
+    if (c > 0) return proof()(c, a, b);
+    return known_->imply(c, a, b) || restricted().test(c, a, b);
   });
 }
 

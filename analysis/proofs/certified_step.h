@@ -4,7 +4,8 @@
 // An eigenpair (μ, v) of the damped system obeys μ² + (v*D'v) μ + v*K'v = 0: it is one of the scalar mode
 // (d, k) = (v*D'v, v*K'v), a point of the joint numerical range W. So where W, scaled to (h d, h² k), lies
 // inside a convex polygon inside the method's region, the method is stable. An edge a X + b Y <= c holds on
-// all of W iff c M - a h D - b h² K is positive semidefinite, and a Cholesky factorization proves that.
+// all of W iff c M - a h D - b h² K is positive semidefinite, and a Cholesky factorization proves that, or
+// where c = 0 that no coupling has a damper too weak for its stiffness.
 #pragma once
 
 #include <memory>
@@ -23,9 +24,11 @@ class CertifiedSteps {
   /// `s`, whose K and D are positive semidefinite, must outlive it.
   explicit CertifiedSteps(const StructuralMatrices& s, const ArpackOptions& options = {});
   explicit CertifiedSteps(StructuralMatrices&&, const ArpackOptions& = {}) = delete;
-  /// Of a structure that only these know. Polygons with an edge through the origin, which asks for the
-  /// structure without its rigid motions, prove nothing then.
-  CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof);
+  /// Of a structure that only these know, with its coupling_ratio, or 0 (analysis/proofs/sum_of_couplings.h).
+  /// Of polygons with an edge through the origin, where a factorization would ask for the structure without
+  /// its rigid motions, only those that follow from that prove something then.
+  CertifiedSteps(std::shared_ptr<const ExtremePoints> range, DefinitenessTest proof,
+                 double coupling_ratio = 0);
 
   const ExtremePoints& range() const { return *range_; }
   /// The proofs of the whole structure; made when first asked for. What follows from earlier ones is not
@@ -48,6 +51,8 @@ class CertifiedSteps {
  private:
   struct Restricted;  // the structure without its rigid motions
 
+  double coupling_ratio();
+  PolygonFit fit(const Method& method, const Stiffening& stiffening, std::vector<ModePoint>& modes);
   template <class Holds>
   std::optional<double> search(const Method& method, const Stiffening& stiffening, const Holds& holds);
   std::optional<ExtremePoint> farthest(const HalfPlane& edge, double h, const Stiffening& stiffening);
@@ -58,6 +63,7 @@ class CertifiedSteps {
   std::shared_ptr<const ExtremePoints> range_;
   DefinitenessTest proof_;
   std::shared_ptr<ProvedHalfPlanes> known_ = std::make_shared<ProvedHalfPlanes>();
+  std::optional<double> coupling_ratio_;
   ArpackOptions options_;
   std::shared_ptr<Restricted> restricted_;
   std::vector<ModePoint> outline_;  // points of W, more where a polygon's edge asked for them

@@ -32,10 +32,15 @@ struct Resisted {
   }
 };
 
-// a / its largest diagonal entry, both per unit of mass.
-SparseMatrix normalized(const SparseMatrix& a, const Eigen::VectorXd& mass) {
+// The largest diagonal entry per unit of mass; 1 where all are 0.
+double unit_of(const SparseMatrix& a, const Eigen::VectorXd& mass) {
   const double largest = Eigen::VectorXd(a.diagonal()).cwiseQuotient(mass).maxCoeff();
-  return largest > 0 ? SparseMatrix(a / largest) : a;
+  return largest > 0 ? largest : 1;
+}
+
+// Rounding's part of a pivot where K + D, each of unit size, has this diagonal.
+Eigen::VectorXd least_pivots(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& mass) {
+  return rounding * diagonal + global_rounding * mass;
 }
 
 SparseMatrix rows_and_columns(const SparseMatrix& a, const std::vector<int>& place, Eigen::Index size) {
@@ -54,10 +59,10 @@ SparseMatrix rows_and_columns(const SparseMatrix& a, const std::vector<int>& pla
 // A pivot is at most the diagonal's entry: what is rounding there, as sideways in a flat net, is held.
 Resisted::Resisted(const StructuralMatrices& s) {
   const Eigen::VectorXd mass = s.mass.diagonal();
-  sum = normalized(s.stiffness, mass);
-  if (s.has_damping()) sum = SparseMatrix(sum + normalized(s.damping, mass));
+  sum = s.stiffness / unit_of(s.stiffness, mass);
+  if (s.has_damping()) sum = SparseMatrix(sum + s.damping / unit_of(s.damping, mass));
   const Eigen::VectorXd diagonal = sum.diagonal();
-  least_pivot = rounding * diagonal + global_rounding * mass;
+  least_pivot = least_pivots(diagonal, mass);
   keep([&](Eigen::Index i) { return diagonal[i] > least_pivot[i]; });
 }
 
@@ -157,6 +162,16 @@ StructuralMatrices part_of(const StructuralMatrices& s, const std::vector<int>& 
 }
 
 }  // namespace
+
+std::vector<bool> resisted_unknowns(const StructuralMatrices& s) {
+  const Eigen::VectorXd mass = s.mass.diagonal();
+  Eigen::VectorXd diagonal = s.stiffness.diagonal() / unit_of(s.stiffness, mass);
+  if (s.has_damping()) diagonal += s.damping.diagonal() / unit_of(s.damping, mass);
+  const Eigen::VectorXd least = least_pivots(diagonal, mass);
+  std::vector<bool> resisted;
+  for (Eigen::Index i = 0; i < diagonal.size(); ++i) resisted.push_back(diagonal[i] > least[i]);
+  return resisted;
+}
 
 StructuralMatrices without_rigid_motions(const StructuralMatrices& s) {
   Resisted r(s);

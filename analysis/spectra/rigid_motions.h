@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "solvers/linear/structural_matrices.h"
 
@@ -18,5 +19,8 @@ StructuralMatrices without_rigid_motions(const StructuralMatrices& s);
 /// net, and nobody has looked for other motions, which costs a factorization. Nothing where translations are
 /// seen to be among those, or there are so few unknowns that looking costs little.
 std::optional<StructuralMatrices> without_free_unknowns(const StructuralMatrices& s);
+
+/// Of each unknown, whether more than rounding resists it by itself.
+std::vector<bool> resisted_unknowns(const StructuralMatrices& s);
 
 }  // namespace springstab

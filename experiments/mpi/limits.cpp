@@ -142,8 +142,8 @@ std::unique_ptr<GeneralDamping> general_damping(const System& system, std::share
   if (system.model.kind != DampingModel::Kind::general) return nullptr;
   const double tolerance = range->tolerance();
   return std::make_unique<GeneralDamping>(
-      std::move(range), [&proof](double c, double a, double b) { return proof.holds(c, a, b); }, mode,
-      system.model, safety, ArpackOptions{.tolerance = tolerance});
+      std::move(range), [&proof](double c, double a, double b) { return proof.holds(c, a, b); },
+      proof.coupling_ratio(), mode, system.model, safety, ArpackOptions{.tolerance = tolerance});
 }
 
 StructureLimitsOptions wanted_of(const CommonOptions& common, const LimitsOptions& options,

@@ -1,10 +1,13 @@
 #include "experiments/mpi/proof.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
 
+#include "analysis/constants.h"
 #include "analysis/proofs/graph_parts.h"
+#include "analysis/proofs/sum_of_couplings.h"
 #include "experiments/mpi/agreement.h"
 
 namespace springstab::mpi {
@@ -135,6 +138,7 @@ DistributedProof::DistributedProof(const System& system, double loss) : system_(
   } else {
     take_part(system, all_for_the_first(system), around_);
     if (rank() == 0) own_.emplace(&around_);
+    columns_ = {0, around_.size()};
   }
 }
 
@@ -152,6 +156,7 @@ void DistributedProof::take_own_pieces(double loss) {
   const OwnRows own(system_.stiffness);
   PetscInt first = 0;
   petsc(ISLocate(rows, own.first, &first));
+  columns_ = {first, first + own.last - own.first};
   const int first_node = first / group, last_node = first_node + (own.last - own.first) / group;
   const std::vector<int> mine = own_parts(graph, first_node, last_node, layers);
   const int count = mine.empty() ? 0 : *std::ranges::max_element(mine) + 1;
@@ -172,6 +177,13 @@ void DistributedProof::take_own_pieces(double loss) {
 bool DistributedProof::holds(double c, double a, double b) {
   if (pieces_ > 0) return own_->holds(c, a, b);
   return told_by_the_first(own_ && own_->holds(c, a, b));
+}
+
+double DistributedProof::coupling_ratio() const {
+  if (!system_.damping || system_.unknowns_a_node != 3) return 0;
+  double ratio = springstab::coupling_ratio(around_, columns_).value_or(0);
+  MPI_Allreduce(MPI_IN_PLACE, &ratio, 1, MPI_DOUBLE, MPI_MIN, PETSC_COMM_WORLD);
+  return std::isfinite(ratio) ? ratio : 0;
 }
 
 std::optional<bool> DistributedProof::stiffness_is_semidefinite() {

@@ -24,6 +24,8 @@ class DistributedProof {
   bool holds(double c, double a, double b);
   /// Of all ranks; 0 where one factorization proves.
   long pieces() const { return pieces_; }
+  /// A coupling_ratio of D and K (analysis/proofs/sum_of_couplings.h); 0 where none is known.
+  double coupling_ratio() const;
   /// Whether K has no eigenvalue below 0 but for rounding; nothing where that is not tested.
   std::optional<bool> stiffness_is_semidefinite();
 
@@ -32,6 +34,7 @@ class DistributedProof {
 
   const System& system_;
   StructuralMatrices around_;             // of this rank's rows and those that its pieces need besides
+  IndexRange columns_{0, 0};              // of these, this rank's own
   std::optional<DefinitenessProof> own_;  // this rank's
   long pieces_ = 0;
 };

@@ -305,6 +305,11 @@ BOOST_AUTO_TEST_CASE(no_coupling_has_a_damper_weaker_than_the_coupling_ratio) {
     }
   BOOST_TEST(Ladder(random, {1, 1, 0}, 0).ratio().value() == 0);
   BOOST_TEST(!Ladder(random, {1, -1e-6}, 0).ratio());
+  Ladder pushed(random, {1, -0.5},
+                0);  // by couplings of which D - ρ K is semidefinite for large ρ, not for 0
+  pushed.s.stiffness = SparseMatrix(1e3 * pushed.s.mass - pushed.s.stiffness);
+  pushed.s.damping = SparseMatrix(1e3 * pushed.s.mass + pushed.s.damping);
+  BOOST_TEST(!pushed.ratio());
   Ladder free(random, {1}, 0);
   free.s.stiffness.setZero();
   BOOST_TEST(std::isinf(free.ratio().value()));

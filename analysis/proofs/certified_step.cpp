@@ -104,7 +104,7 @@ const std::vector<ModePoint>& CertifiedSteps::outline() {
 std::optional<ExtremePoint> CertifiedSteps::farthest(const HalfPlane& edge, double h,
                                                      const Stiffening& stiffening) {
   const double a = edge.x * h, b = edge.y * h * h;
-  const ExtremePoints& range = edge.bound == 0 ? restricted().range : *range_;
+  const ExtremePoints& range = edge.bound == 0 && s_ ? restricted().range : *range_;
   return range.farthest(a, a * stiffening.added_damping + b * stiffening.factor, loose);
 }
 
@@ -188,7 +188,7 @@ std::optional<double> CertifiedSteps::certified(const Method& method) {
   return search(method, {}, [&](const HalfPlane& edge, double h) {
     const double c = edge.bound, a = edge.x * h, b = edge.y * h * h;
     if (c > 0) return proof()(c, a, b);
-    return known_->imply(c, a, b) || restricted().test(c, a, b);
+    return known_->imply(c, a, b) || (s_ && restricted().test(c, a, b));
   });
 }
 

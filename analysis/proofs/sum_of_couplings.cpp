@@ -74,11 +74,12 @@ struct Diagonal {
   }
 };
 
-// The largest ratio up to `most` that `holds`, as all below it do; P - ρ Q has no diagonal beyond `bound`.
+// The largest ratio up to `most` that `holds`: where 0 does, all below it do. P - ρ Q has no diagonal beyond
+// `bound`.
 template <class Holds>
 std::optional<double> largest(double most, const Pair& bound, const Holds& holds) {
-  if (holds(most)) return most;
   if (!holds(0)) return std::nullopt;
+  if (holds(most)) return most;
   double low = 0, high = most;
   for (int r = 0; r < 3; ++r)
     if (bound.q(r, r) > 0) high = std::min(high, 2 * bound.p(r, r) / bound.q(r, r));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "analysis/constants.h"
 #include "analysis/proofs/sum_of_couplings.h"
 #include "analysis/spectra/rigid_motions.h"
 

@@ -543,6 +543,20 @@ BOOST_AUTO_TEST_CASE(what_was_proved_is_not_proved_again) {
     }
 }
 
+BOOST_AUTO_TEST_CASE(a_coupling_ratio_proves_edges_through_the_origin_and_no_others) {
+  const StructuralMatrices s = prepare(diagonal({100, 1, 10}), {}, diagonal({1, 10, 0.05}));
+  const auto range = std::make_shared<const NumericalRange>(s);
+  DefinitenessProof proof(&s);
+  for (const double ratio : {0.001, 0.002, 0.005}) {
+    const double h = CertifiedSteps(range, proof.test(), ratio).certified("explicit-euler").value();
+    BOOST_TEST(h <= ratio);
+    BOOST_TEST(h >= 0.999 * ratio);
+  }
+  BOOST_TEST(!CertifiedSteps(range, proof.test(), 0).certified("explicit-euler"));
+  const DefinitenessTest nothing = [](double, double, double) { return false; };
+  BOOST_TEST(!CertifiedSteps(range, nothing, 0.005).certified("explicit-euler"));
+}
+
 BOOST_AUTO_TEST_CASE(a_step_for_every_pose_is_stable_in_each) {
   RandomNets random(5);
   for (int i = 0; i < 60; ++i) BOOST_TEST_CONTEXT("net " << i) {

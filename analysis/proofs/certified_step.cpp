@@ -173,7 +173,7 @@ std::optional<double> CertifiedSteps::search(const Method& method, const Stiffen
     const std::optional<ExtremePoint> p = farthest(*failed, h, stiffening);
     if (!p) return std::nullopt;
     if (exit_step(*failed, stiffening(*p)) >= h) {  // what rounding and tolerance leave open
-      if (failed->bound == 0 && margin >= unlikely && hold_rigid_motions()) {
+      if (s_ && failed->bound == 0 && margin >= unlikely && hold_rigid_motions()) {
         margin = first_margin;
         continue;
       }
